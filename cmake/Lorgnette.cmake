@@ -1,0 +1,50 @@
+# Settings that every target shares, and lorgnette_module(): one folder, one library, its tests.
+
+set(CMAKE_CXX_STANDARD 20)
+set(CMAKE_CXX_STANDARD_REQUIRED ON)
+set(CMAKE_CXX_EXTENSIONS OFF)
+set(CMAKE_EXPORT_COMPILE_COMMANDS ON)
+set(CMAKE_CXX_FLAGS_RELEASE "-O2 -DNDEBUG")
+# Eigen's and the standard library's asserts stay on while developing.
+set(CMAKE_CXX_FLAGS_RELWITHDEBINFO "-O1 -g1 -D_GLIBCXX_ASSERTIONS")
+set(CMAKE_RUNTIME_OUTPUT_DIRECTORY "${PROJECT_BINARY_DIR}")
+
+find_program(CCACHE_PROGRAM ccache)
+if(CCACHE_PROGRAM AND NOT CMAKE_CXX_COMPILER_LAUNCHER)
+  set(CMAKE_CXX_COMPILER_LAUNCHER "${CCACHE_PROGRAM}")
+endif()
+
+add_library(lorgnette_options INTERFACE)
+target_compile_options(lorgnette_options INTERFACE -Wall -Wextra -Wshadow -Wnon-virtual-dtor
+                                                  -Woverloaded-virtual -Werror)
+target_include_directories(lorgnette_options INTERFACE "${PROJECT_SOURCE_DIR}")
+
+# lorgnette_module(NAME [PUBLIC lib...] [PRIVATE lib...])
+#   library lorgnette_NAME          of NAME/*.cc
+#   test program NAME_tests         of tests/NAME/*.cc, when LORGNETTE_TESTS is on
+#   benchmark program NAME_bench    of bench/NAME/*.cc, when LORGNETTE_BENCH is on
+function(lorgnette_module name)
+  cmake_parse_arguments(ARG "" "" "PUBLIC;PRIVATE" ${ARGN})
+  file(GLOB sources CONFIGURE_DEPENDS "${PROJECT_SOURCE_DIR}/${name}/*.cc")
+  add_library(lorgnette_${name} STATIC ${sources})
+  target_link_libraries(lorgnette_${name} PUBLIC ${ARG_PUBLIC} PRIVATE ${ARG_PRIVATE}
+                                                                       lorgnette_options)
+  target_include_directories(lorgnette_${name} PUBLIC "${PROJECT_SOURCE_DIR}")
+
+  file(GLOB test_sources CONFIGURE_DEPENDS "${PROJECT_SOURCE_DIR}/tests/${name}/*.cc")
+  if(LORGNETTE_TESTS AND test_sources)
+    add_executable(${name}_tests ${test_sources})
+    target_link_libraries(${name}_tests PRIVATE lorgnette_${name} ${ARG_PRIVATE} lorgnette_options
+                                                GTest::gmock GTest::gtest_main)
+    target_compile_definitions(${name}_tests PRIVATE
+                               LORGNETTE_SOURCE_DIR="${PROJECT_SOURCE_DIR}")
+    gtest_discover_tests(${name}_tests TEST_PREFIX "${name}." DISCOVERY_MODE PRE_TEST)
+  endif()
+
+  file(GLOB bench_sources CONFIGURE_DEPENDS "${PROJECT_SOURCE_DIR}/bench/${name}/*.cc")
+  if(LORGNETTE_BENCH AND bench_sources)
+    add_executable(${name}_bench ${bench_sources})
+    target_link_libraries(${name}_bench PRIVATE lorgnette_${name} ${ARG_PRIVATE} lorgnette_options
+                                                benchmark::benchmark_main)
+  endif()
+endfunction()

@@ -1,0 +1,45 @@
+// SPDX-License-Identifier: Apache-2.0
+// From an order to a lens: base curve, back curve(s), thickness.
+#pragma once
+
+#include <Eigen/Core>
+#include <optional>
+#include <vector>
+
+#include "base/result.h"
+#include "base/units.h"
+#include "optics/lens.h"
+#include "optics/prescription.h"
+
+namespace lorgnette {
+
+enum class Eye { kRight, kLeft };
+
+// Everything that fixes one lens. Contour points are in the lens frame's x, y (optics/ray.h: +x
+// toward the wearer's right, +y up), relative to the optical centre.
+struct LensOrder {
+  Eye eye = Eye::kRight;
+  EyePrescription rx;  // sphere means exact back vertex power
+  Medium medium;
+  std::optional<Diopters> base_curve;         // true power at the lens index; by rule when absent
+  std::optional<double> center_thickness_mm;  // by rule when absent
+  double min_center_thickness_mm = 1.5;       // rule for minus lenses
+  double min_edge_thickness_mm = 1.0;         // rule for plus lenses, over the whole contour
+  std::vector<Eigen::Vector2d> contour_mm;    // closed polygon, either orientation; empty: round
+  double diameter_mm = 60;                    // of the round lens when there is no contour
+};
+
+struct LensDesign {
+  LensOrder order;
+  Lens lens;
+  Diopters front_power;                                         // F1
+  Diopters back_power_axis;                                     // F2 along the cylinder axis
+  Diopters back_power_across;                                   // F2 at the axis + 90
+  double min_edge_thickness_mm = 0, max_edge_thickness_mm = 0;  // over the contour, axial
+  double mass_g = 0;
+};
+
+// Fails with what is impossible and what would be possible (no real sag at the rim, tau F1 > 0.5).
+Result<LensDesign> DesignLens(const LensOrder& order);
+
+}  // namespace lorgnette

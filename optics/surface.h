@@ -1,0 +1,63 @@
+// SPDX-License-Identifier: Apache-2.0
+// A lens surface as the graph z = sag(x, y) over its vertex tangent plane: value, gradient and
+// second derivatives in closed form, and a ray intersection that is stable from plano to steep.
+//
+// Curvature is stored, never a radius (plano is 0); positive when the centre of curvature is on
+// the eye side (+z). Coordinates are the surface's own: origin at its vertex, axes those of the
+// lens frame (optics/ray.h). Source: docs/optics.md, "Surfaces".
+#pragma once
+
+#include <Eigen/Core>
+#include <optional>
+#include <variant>
+#include <vector>
+
+#include "optics/ray.h"
+
+namespace lorgnette {
+
+// Sag and derivatives at one point: mm, -, -, 1/mm, 1/mm, 1/mm.
+struct SurfaceJet {
+  double z = 0, zx = 0, zy = 0, zxx = 0, zxy = 0, zyy = 0;
+};
+
+// Sphere or plane.
+struct SphereSurface {
+  double curvature = 0;  // 1/mm
+};
+
+// Exact torus: a circle of curvature `curvature_generator` lying in the generator meridian,
+// revolved about an axis parallel to that meridian, so that the curvature at the vertex across it
+// is `curvature_across`. Which circle generates is part of the form, not of the powers.
+struct TorusSurface {
+  double curvature_generator = 0;  // 1/mm
+  double curvature_across = 0;     // 1/mm
+  double generator_angle = 0;      // radians from +x toward +y of the generator meridian
+};
+
+// Where a ray meets the surface.
+struct SurfaceHit {
+  double distance = 0;     // along the ray, mm; may be negative (surface behind the origin)
+  Eigen::Vector3d point;   // mm, in the surface's frame
+  Eigen::Vector3d normal;  // unit, toward +z
+};
+
+class Surface {
+ public:
+  using Shape = std::variant<SphereSurface, TorusSurface>;
+  Surface() = default;
+  explicit(false) Surface(Shape shape) : shape_(shape) {}
+  const Shape& shape() const { return shape_; }
+
+  // nullopt where the surface does not exist (|c| h > 1 and the like), and for no other reason.
+  std::optional<SurfaceJet> Jet(double x, double y) const;
+  // First-sheet intersection (the sheet that holds the vertex); nullopt when the ray misses it.
+  std::optional<SurfaceHit> Intersect(const Ray& ray) const;
+  // Curvature at the vertex as the symmetric matrix [zxx zxy; zxy zyy], 1/mm.
+  Eigen::Matrix2d VertexCurvature() const;
+
+ private:
+  Shape shape_ = SphereSurface{};
+};
+
+}  // namespace lorgnette

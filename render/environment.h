@@ -1,0 +1,36 @@
+// SPDX-License-Identifier: Apache-2.0
+// Light from all around, as a latitude-longitude map of linear radiance.
+//
+// World axes: +x right, +y up, +z toward the camera (out of the picture). Column-to-direction rule:
+//   u = (column + .5) / width, v = (row + .5) / height, lon = 2 pi (u - .5), lat = pi (.5 - v)
+//   direction = (-sin lon cos lat, sin lat, cos lon cos lat)
+// so the image centre looks along +z, columns increase toward -x, row 0 is up. Tested with one
+// bright texel.
+#pragma once
+
+#include <Eigen/Core>
+#include <memory>
+#include <string>
+
+#include "base/image.h"
+#include "base/result.h"
+
+namespace lorgnette {
+
+class Environment {
+ public:
+  // EXR or Radiance HDR. Negative texels are clamped to 0 with a note in `warning`; NaN and
+  // infinite ones are an error.
+  static Result<Environment> Read(const std::string& path, std::string* warning = nullptr);
+  static Environment Constant(const Eigen::Vector3f& radiance);
+  explicit Environment(ImageRgbF map);
+
+  const ImageRgbF& map() const { return map_; }
+  // Bilinear radiance along a world direction (need not be unit).
+  Eigen::Vector3f Radiance(const Eigen::Vector3f& direction) const;
+
+ private:
+  ImageRgbF map_;
+};
+
+}  // namespace lorgnette

@@ -1,0 +1,38 @@
+// SPDX-License-Identifier: Apache-2.0
+// Follows a face through a clip: one detection, then landmark-driven regions; afterwards a personal
+// mesh, the focal length and smoothed poses are fitted over the whole clip.
+#pragma once
+
+#include <memory>
+#include <string>
+
+#include "base/image.h"
+#include "base/result.h"
+#include "tracking/head_track.h"
+
+namespace lorgnette {
+
+struct TrackerOptions {
+  std::string model_dir;  // folder with the converted networks and the canonical mesh
+  double pd_mm = 64;      // scale: distance between the pupils
+  double focal_px = 0;    // 0: estimated from the clip, or a 60 degree default if it cannot
+};
+
+class Tracker {
+ public:
+  static Result<Tracker> Create(const TrackerOptions& options);
+  Tracker(Tracker&&) noexcept;
+  ~Tracker();
+
+  // Frames in order, all of one size.
+  Status Add(const ImageRgb8& frame, double time_s);
+  // Fails with one sentence when no frame shows a face.
+  Result<HeadTrack> Finish();
+
+ private:
+  struct State;
+  explicit Tracker(std::unique_ptr<State> state);
+  std::unique_ptr<State> state_;
+};
+
+}  // namespace lorgnette
