@@ -1,0 +1,34 @@
+// SPDX-License-Identifier: Apache-2.0
+// Runs validation cases and writes what they found.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "base/result.h"
+#include "validation/case.h"
+
+namespace lorgnette::validation {
+
+struct CaseResult {
+  const Case* definition = nullptr;
+  CaseRun run;
+  double seconds = 0;
+};
+
+struct SuiteResult {
+  std::vector<CaseResult> cases;
+  int passed = 0, failed = 0, skipped = 0;
+};
+
+// Cases by exact id and group; an empty string takes all. Fails when nothing matches.
+Result<SuiteResult> RunSuite(const std::string& id, const std::string& group);
+
+// One line a case: number, group, matching digits, verdict, title; failed checks below their case.
+std::string TextTable(const SuiteResult& result);
+// Everything, for machines (docs/validation.md has the keys).
+std::string JsonReport(const SuiteResult& result);
+// One page that needs no network: a plot of matching digits, a table a case, light and dark.
+std::string HtmlReport(const SuiteResult& result);
+
+}  // namespace lorgnette::validation
