@@ -45,6 +45,7 @@ class JsonReader {
   struct Document;
   struct Node;
   explicit JsonReader(std::shared_ptr<Document> document, std::shared_ptr<Node> node);
+  void FailMissing(const std::string& key, const std::string& want);
   std::shared_ptr<Document> document_;
   std::shared_ptr<Node> node_;
 };
