@@ -28,9 +28,31 @@ class Environment {
   const ImageRgbF& map() const { return map_; }
   // Bilinear radiance along a world direction (need not be unit).
   Eigen::Vector3f Radiance(const Eigen::Vector3f& direction) const;
+  // Mean over all directions.
+  Eigen::Vector3f Mean() const;
+
+  // World direction of a position in the map, in texels (texel centres at .5).
+  Eigen::Vector3f Direction(double column, double row) const;
 
  private:
   ImageRgbF map_;
+};
+
+// An environment blurred once with a rotationally symmetric kernel, for look-ups without any
+// trigonometry: an octahedral map (Cigolle et al., JCGT 3(2), 2014), bilinear.
+class BlurredEnvironment {
+ public:
+  // Mean over a soft cone whose solid angle is 4 pi / cells: what one of `cells` equal directions
+  // of the sphere stands for.
+  static BlurredEnvironment ForCells(const Environment& environment, int cells);
+  // Normalised Phong lobe, cos^shininess about the direction.
+  static BlurredEnvironment ForPhong(const Environment& environment, double shininess);
+
+  Eigen::Vector3f Radiance(const Eigen::Vector3f& direction) const;
+
+ private:
+  BlurredEnvironment(const Environment& environment, double exponent);
+  ImageRgbF map_;  // with a border of one texel on every side
 };
 
 }  // namespace lorgnette

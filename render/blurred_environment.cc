@@ -1,0 +1,145 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <algorithm>
+#include <cmath>
+
+#include "base/units.h"
+#include "render/environment.h"
+
+namespace lorgnette {
+namespace {
+
+constexpr int kSide = 64;          // texels of the octahedral map, without its border
+constexpr int kSourceWidth = 256;  // the environment is first reduced to 256 x 128 at most
+
+// Octahedral coordinates in [-1, 1] of a direction, and back.
+Eigen::Vector2f Fold(const Eigen::Vector3f& d) {
+  const float scale = 1.0f / (std::abs(d.x()) + std::abs(d.y()) + std::abs(d.z()));
+  const float x = d.x() * scale, y = d.y() * scale;
+  if (d.z() >= 0) return {x, y};
+  return {std::copysign(1 - std::abs(y), x), std::copysign(1 - std::abs(x), y)};
+}
+
+Eigen::Vector3f Unfold(float x, float y) {
+  // Past the square's edge the map continues as its own mirror image about the edge's middle.
+  if (std::abs(x) > 1) {
+    x = std::copysign(2 - std::abs(x), x);
+    y = -y;
+  }
+  if (std::abs(y) > 1) {
+    y = std::copysign(2 - std::abs(y), y);
+    x = -x;
+  }
+  Eigen::Vector3f d(x, y, 1 - std::abs(x) - std::abs(y));
+  if (d.z() < 0) {
+    const float folded_x = std::copysign(1 - std::abs(y), x);
+    const float folded_y = std::copysign(1 - std::abs(x), y);
+    d.x() = folded_x;
+    d.y() = folded_y;
+  }
+  return d.normalized();
+}
+
+// One row of texels of the reduced environment: they share their elevation and solid angle.
+struct SourceRow {
+  float sin_lat, cos_lat, weight;
+};
+
+struct Source {
+  ImageRgbF map;
+  std::vector<SourceRow> rows;
+  std::vector<Eigen::Vector2f> columns;  // -sin lon, cos lon
+};
+
+Source Reduce(const Environment& environment) {
+  const ImageRgbF& in = environment.map();
+  const int factor = std::max(1, in.width / kSourceWidth);
+  Source out;
+  out.map = ImageRgbF((in.width + factor - 1) / factor, (in.height + factor - 1) / factor);
+  for (int y = 0; y < out.map.height; ++y) {
+    const int y1 = std::min((y + 1) * factor, in.height);
+    for (int x = 0; x < out.map.width; ++x) {
+      const int x1 = std::min((x + 1) * factor, in.width);
+      Eigen::Vector3f sum = Eigen::Vector3f::Zero();
+      for (int v = y * factor; v < y1; ++v) {
+        for (int u = x * factor; u < x1; ++u) sum += Eigen::Map<const Eigen::Vector3f>(in.at(u, v));
+      }
+      sum /= float((y1 - y * factor) * (x1 - x * factor));
+      std::copy(sum.data(), sum.data() + 3, out.map.at(x, y));
+    }
+    const double lat = kPi * (0.5 - 0.5 * (y * factor + y1) / in.height);
+    out.rows.push_back(
+        {float(std::sin(lat)), float(std::cos(lat)), float(std::cos(lat) * (y1 - y * factor))});
+  }
+  for (int x = 0; x < out.map.width; ++x) {
+    const int x1 = std::min((x + 1) * factor, in.width);
+    const double lon = 2 * kPi * (0.5 * (x * factor + x1) / in.width - 0.5);
+    out.columns.emplace_back(float(-std::sin(lon)), float(std::cos(lon)));
+  }
+  return out;
+}
+
+// Mean of the map under the kernel cos^exponent about d.
+Eigen::Vector3f Gather(const Source& source, const Eigen::Vector3f& d, float exponent,
+                       float cos_cut) {
+  Eigen::Vector3f sum = Eigen::Vector3f::Zero();
+  float weight = 0;
+  const float horizontal = std::sqrt(d.x() * d.x() + d.z() * d.z());
+  for (int y = 0; y < source.map.height; ++y) {
+    const SourceRow& row = source.rows[std::size_t(y)];
+    // The best any column of this row can do.
+    if (d.y() * row.sin_lat + horizontal * row.cos_lat < cos_cut) continue;
+    const float* texel = source.map.at(0, y);
+    for (int x = 0; x < source.map.width; ++x, texel += 3) {
+      const Eigen::Vector2f& column = source.columns[std::size_t(x)];
+      const float cosine =
+          d.y() * row.sin_lat + row.cos_lat * (d.x() * column.x() + d.z() * column.y());
+      if (cosine < cos_cut) continue;
+      const float w = row.weight * std::pow(cosine, exponent);
+      sum += w * Eigen::Map<const Eigen::Vector3f>(texel);
+      weight += w;
+    }
+  }
+  return weight > 0 ? Eigen::Vector3f(sum / weight) : Eigen::Vector3f::Zero();
+}
+
+}  // namespace
+
+BlurredEnvironment::BlurredEnvironment(const Environment& environment, double exponent)
+    : map_(kSide + 2, kSide + 2) {
+  const Source source = Reduce(environment);
+  // Beyond this angle the kernel is below 1/1000 of its peak; at least three source texels wide,
+  // so that a kernel finer than the map still finds one.
+  const double cut = std::max(1 - std::pow(1e-3, 1 / std::max(exponent, 1e-3)),
+                              1 - std::cos(3 * kPi / source.map.height));
+  const float cos_cut = float(std::max(1 - cut, 0.0));
+  for (int y = 0; y < kSide + 2; ++y) {
+    for (int x = 0; x < kSide + 2; ++x) {
+      const Eigen::Vector3f d =
+          Unfold(float(2 * (x - 0.5) / kSide - 1), float(2 * (y - 0.5) / kSide - 1));
+      const Eigen::Vector3f mean = Gather(source, d, float(exponent), cos_cut);
+      std::copy(mean.data(), mean.data() + 3, map_.at(x, y));
+    }
+  }
+}
+
+BlurredEnvironment BlurredEnvironment::ForCells(const Environment& environment, int cells) {
+  // The lobe cos^n has the effective solid angle 2 pi / (n + 1); a cell has 4 pi / cells.
+  return BlurredEnvironment(environment, 0.5 * cells - 1);
+}
+
+BlurredEnvironment BlurredEnvironment::ForPhong(const Environment& environment, double shininess) {
+  return BlurredEnvironment(environment, shininess);
+}
+
+Eigen::Vector3f BlurredEnvironment::Radiance(const Eigen::Vector3f& direction) const {
+  const Eigen::Vector2f p = Fold(direction);
+  const float column = (p.x() + 1) * (0.5f * kSide) + 0.5f;
+  const float row = (p.y() + 1) * (0.5f * kSide) + 0.5f;
+  const int x = std::min(int(column), kSide), y = std::min(int(row), kSide);
+  const float fx = column - float(x), fy = row - float(y);
+  using Texel = Eigen::Map<const Eigen::Vector3f>;
+  return (1 - fy) * ((1 - fx) * Texel(map_.at(x, y)) + fx * Texel(map_.at(x + 1, y))) +
+         fy * ((1 - fx) * Texel(map_.at(x, y + 1)) + fx * Texel(map_.at(x + 1, y + 1)));
+}
+
+}  // namespace lorgnette

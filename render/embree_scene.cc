@@ -1,0 +1,192 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "render/embree_scene.h"
+
+#include <embree3/rtcore.h>
+#include <fmt/format.h>
+
+#include <cstring>
+#include <limits>
+#include <utility>
+
+#include "base/check.h"
+
+namespace lorgnette {
+namespace {
+
+RTCGeometry NewGeometry(RTCDevice device, const TriangleMesh& mesh, bool moves) {
+  RTCGeometry geometry = rtcNewGeometry(device, RTC_GEOMETRY_TYPE_TRIANGLE);
+  rtcSetGeometryBuildQuality(geometry, moves ? RTC_BUILD_QUALITY_REFIT : RTC_BUILD_QUALITY_MEDIUM);
+  auto* vertices = static_cast<float*>(rtcSetNewGeometryBuffer(geometry, RTC_BUFFER_TYPE_VERTEX, 0,
+                                                               RTC_FORMAT_FLOAT3, 3 * sizeof(float),
+                                                               mesh.positions.size()));
+  for (const Eigen::Vector3d& p : mesh.positions) {
+    for (int k = 0; k < 3; ++k) *vertices++ = float(p[k]);
+  }
+  auto* indices = static_cast<std::uint32_t*>(
+      rtcSetNewGeometryBuffer(geometry, RTC_BUFFER_TYPE_INDEX, 0, RTC_FORMAT_UINT3,
+                              3 * sizeof(std::uint32_t), mesh.triangles.size()));
+  for (const Eigen::Vector3i& t : mesh.triangles) {
+    for (int k = 0; k < 3; ++k) *indices++ = std::uint32_t(t[k]);
+  }
+  rtcCommitGeometry(geometry);
+  return geometry;
+}
+
+constexpr std::size_t kGeometries = 3;
+
+RTCIntersectContext CoherentContext() {
+  RTCIntersectContext context;
+  rtcInitIntersectContext(&context);
+  context.flags = RTC_INTERSECT_CONTEXT_FLAG_COHERENT;
+  return context;
+}
+
+}  // namespace
+
+struct EmbreeScene::State {
+  RTCDevice device = nullptr;
+  RTCScene scenes[3] = {nullptr, nullptr, nullptr};                   // by RaySet
+  RTCGeometry geometries[kGeometries] = {nullptr, nullptr, nullptr};  // by SceneObject
+  std::size_t face_vertices = 0;
+
+  State() = default;
+  State(const State&) = delete;
+  State& operator=(const State&) = delete;
+  ~State() {
+    for (RTCScene scene : scenes) {
+      if (scene) rtcReleaseScene(scene);
+    }
+    for (RTCGeometry geometry : geometries) {
+      if (geometry) rtcReleaseGeometry(geometry);
+    }
+    if (device) rtcReleaseDevice(device);
+  }
+  RTCScene scene(RaySet set) const { return scenes[std::size_t(set)]; }
+};
+
+EmbreeScene::EmbreeScene(std::unique_ptr<State> state) : state_(std::move(state)) {}
+EmbreeScene::EmbreeScene(EmbreeScene&&) noexcept = default;
+EmbreeScene& EmbreeScene::operator=(EmbreeScene&&) noexcept = default;
+EmbreeScene::~EmbreeScene() = default;
+
+Result<EmbreeScene> EmbreeScene::Build(const TriangleMesh& face, const TriangleMesh& occluder,
+                                       const TriangleMesh& frame) {
+  auto state = std::make_unique<State>();
+  state->device = rtcNewDevice(nullptr);
+  if (!state->device) {
+    return Failure(
+        fmt::format("Embree cannot be initialised (error {})", int(rtcGetDeviceError(nullptr))));
+  }
+  state->face_vertices = face.positions.size();
+  const TriangleMesh* meshes[kGeometries] = {&face, &occluder, &frame};
+  for (std::size_t i = 0; i < kGeometries; ++i) {
+    if (!meshes[i]->empty()) state->geometries[i] = NewGeometry(state->device, *meshes[i], i == 0);
+  }
+  const auto attach = [&](RaySet set, std::initializer_list<SceneObject> objects) {
+    RTCScene scene = rtcNewScene(state->device);
+    rtcSetSceneFlags(scene, RTC_SCENE_FLAG_ROBUST);
+    rtcSetSceneBuildQuality(scene, RTC_BUILD_QUALITY_MEDIUM);
+    for (const SceneObject object : objects) {
+      if (RTCGeometry geometry = state->geometries[std::size_t(object)]) {
+        rtcAttachGeometryByID(scene, geometry, unsigned(object));
+      }
+    }
+    rtcCommitScene(scene);
+    state->scenes[std::size_t(set)] = scene;
+  };
+  attach(RaySet::kAll, {SceneObject::kFace, SceneObject::kOccluder, SceneObject::kFrame});
+  attach(RaySet::kHead, {SceneObject::kFace, SceneObject::kOccluder});
+  attach(RaySet::kFrame, {SceneObject::kFrame});
+  if (const RTCError error = rtcGetDeviceError(state->device); error != RTC_ERROR_NONE) {
+    return Failure(fmt::format("Embree cannot build the scene (error {})", int(error)));
+  }
+  return EmbreeScene(std::move(state));
+}
+
+void EmbreeScene::MoveFace(const std::vector<Eigen::Vector3f>& vertices) {
+  LG_CHECK_EQ(vertices.size(), state_->face_vertices);
+  RTCGeometry geometry = state_->geometries[std::size_t(SceneObject::kFace)];
+  if (!geometry) return;
+  auto* out = static_cast<float*>(rtcGetGeometryBufferData(geometry, RTC_BUFFER_TYPE_VERTEX, 0));
+  for (const Eigen::Vector3f& p : vertices) {
+    std::memcpy(out, p.data(), 3 * sizeof(float));
+    out += 3;
+  }
+  rtcUpdateGeometryBuffer(geometry, RTC_BUFFER_TYPE_VERTEX, 0);
+  rtcCommitGeometry(geometry);
+  rtcCommitScene(state_->scene(RaySet::kAll));
+  rtcCommitScene(state_->scene(RaySet::kHead));
+}
+
+SceneHit EmbreeScene::Intersect(RaySet set, const Eigen::Vector3f& origin,
+                                const Eigen::Vector3f& direction, float near, float far) const {
+  RTCIntersectContext context;
+  rtcInitIntersectContext(&context);
+  RTCRayHit q;
+  q.ray = {origin.x(), origin.y(), origin.z(), near, direction.x(), direction.y(), direction.z(), 0,
+           far,        ~0u,        0,          0};
+  q.hit.geomID = RTC_INVALID_GEOMETRY_ID;
+  q.hit.instID[0] = RTC_INVALID_GEOMETRY_ID;
+  rtcIntersect1(state_->scene(set), &context, &q);
+  if (q.hit.geomID == RTC_INVALID_GEOMETRY_ID) return {};
+  return {SceneObject(q.hit.geomID), q.hit.primID, q.ray.tfar, q.hit.u, q.hit.v};
+}
+
+bool EmbreeScene::Occluded(RaySet set, const Eigen::Vector3f& origin,
+                           const Eigen::Vector3f& direction, float near, float far) const {
+  RTCIntersectContext context;
+  rtcInitIntersectContext(&context);
+  RTCRay ray = {
+      origin.x(), origin.y(), origin.z(), near, direction.x(), direction.y(), direction.z(), 0,
+      far,        ~0u,        0,          0};
+  rtcOccluded1(state_->scene(set), &context, &ray);
+  return ray.tfar < 0;
+}
+
+void EmbreeScene::Intersect16(RaySet set, RayPacket& p) const {
+  RTCIntersectContext context = CoherentContext();
+  RTCRayHit16 q;
+  std::memcpy(q.ray.org_x, p.ox, sizeof p.ox);
+  std::memcpy(q.ray.org_y, p.oy, sizeof p.oy);
+  std::memcpy(q.ray.org_z, p.oz, sizeof p.oz);
+  std::memcpy(q.ray.tnear, p.near, sizeof p.near);
+  std::memcpy(q.ray.dir_x, p.dx, sizeof p.dx);
+  std::memcpy(q.ray.dir_y, p.dy, sizeof p.dy);
+  std::memcpy(q.ray.dir_z, p.dz, sizeof p.dz);
+  std::memcpy(q.ray.tfar, p.far, sizeof p.far);
+  std::memset(q.ray.time, 0, sizeof q.ray.time);
+  std::memset(q.ray.mask, 0xff, sizeof q.ray.mask);
+  std::memset(q.ray.flags, 0, sizeof q.ray.flags);
+  std::memset(q.hit.geomID, 0xff, sizeof q.hit.geomID);
+  std::memset(q.hit.instID, 0xff, sizeof q.hit.instID);
+  alignas(64) std::int32_t mask[RayPacket::kSize];
+  for (int i = 0; i < RayPacket::kSize; ++i) mask[i] = p.valid[i] ? -1 : 0;
+  rtcIntersect16(mask, state_->scene(set), &context, &q);
+  std::memcpy(p.far, q.ray.tfar, sizeof p.far);
+  std::memcpy(p.u, q.hit.u, sizeof p.u);
+  std::memcpy(p.v, q.hit.v, sizeof p.v);
+  std::memcpy(p.triangle, q.hit.primID, sizeof p.triangle);
+  std::memcpy(p.object, q.hit.geomID, sizeof p.object);
+}
+
+void EmbreeScene::Occluded16(RaySet set, RayPacket& p) const {
+  RTCIntersectContext context = CoherentContext();
+  RTCRay16 q;
+  std::memcpy(q.org_x, p.ox, sizeof p.ox);
+  std::memcpy(q.org_y, p.oy, sizeof p.oy);
+  std::memcpy(q.org_z, p.oz, sizeof p.oz);
+  std::memcpy(q.tnear, p.near, sizeof p.near);
+  std::memcpy(q.dir_x, p.dx, sizeof p.dx);
+  std::memcpy(q.dir_y, p.dy, sizeof p.dy);
+  std::memcpy(q.dir_z, p.dz, sizeof p.dz);
+  std::memcpy(q.tfar, p.far, sizeof p.far);
+  std::memset(q.time, 0, sizeof q.time);
+  std::memset(q.mask, 0xff, sizeof q.mask);
+  std::memset(q.flags, 0, sizeof q.flags);
+  alignas(64) std::int32_t mask[RayPacket::kSize];
+  for (int i = 0; i < RayPacket::kSize; ++i) mask[i] = p.valid[i] ? -1 : 0;
+  rtcOccluded16(mask, state_->scene(set), &context, &q);
+  std::memcpy(p.far, q.tfar, sizeof p.far);
+}
+
+}  // namespace lorgnette

@@ -1,0 +1,73 @@
+// SPDX-License-Identifier: Apache-2.0
+// Rays against the head and the frame, both in head space. The .cc file is the only one that knows
+// Embree and its version.
+#pragma once
+
+#include <Eigen/Core>
+#include <cstdint>
+#include <memory>
+#include <vector>
+
+#include "base/mesh.h"
+#include "base/result.h"
+
+namespace lorgnette {
+
+enum class SceneObject : std::uint32_t {
+  kFace = 0,
+  kOccluder = 1,
+  kFrame = 2,
+  kNone = 0xffffffffu
+};
+
+// Which objects a ray can meet.
+enum class RaySet { kAll, kHead, kFrame };
+
+// Sixteen rays in structure-of-arrays form; rays with valid[i] == 0 are not traced. After a trace
+// `far` is the distance of the hit, in units of the direction's length.
+struct alignas(64) RayPacket {
+  static constexpr int kSize = 16;
+  std::int32_t valid[kSize];
+  float ox[kSize], oy[kSize], oz[kSize], near[kSize];
+  float dx[kSize], dy[kSize], dz[kSize], far[kSize];
+  float u[kSize], v[kSize];
+  std::uint32_t triangle[kSize];
+  SceneObject object[kSize];
+};
+
+struct SceneHit {
+  SceneObject object = SceneObject::kNone;
+  std::uint32_t triangle = 0;
+  float distance = 0;
+  float u = 0, v = 0;  // weights of the triangle's second and third vertex
+  bool hit() const { return object != SceneObject::kNone; }
+};
+
+class EmbreeScene {
+ public:
+  // Any mesh may be empty. Fails when Embree cannot be initialised or runs out of memory.
+  static Result<EmbreeScene> Build(const TriangleMesh& face, const TriangleMesh& occluder,
+                                   const TriangleMesh& frame);
+  EmbreeScene(EmbreeScene&&) noexcept;
+  EmbreeScene& operator=(EmbreeScene&&) noexcept;
+  ~EmbreeScene();
+
+  // New positions of the face's vertices (as many as at Build); the tree is refitted.
+  void MoveFace(const std::vector<Eigen::Vector3f>& vertices);
+
+  // Nearest hit in (near, far); thread safe.
+  SceneHit Intersect(RaySet set, const Eigen::Vector3f& origin, const Eigen::Vector3f& direction,
+                     float near, float far) const;
+  void Intersect16(RaySet set, RayPacket& packet) const;
+  // Any hit: sets far[i] < 0 for rays that are blocked and leaves u, v, triangle, object alone.
+  void Occluded16(RaySet set, RayPacket& packet) const;
+  bool Occluded(RaySet set, const Eigen::Vector3f& origin, const Eigen::Vector3f& direction,
+                float near, float far) const;
+
+ private:
+  struct State;
+  explicit EmbreeScene(std::unique_ptr<State> state);
+  std::unique_ptr<State> state_;
+};
+
+}  // namespace lorgnette
