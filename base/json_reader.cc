@@ -173,6 +173,10 @@ bool JsonReader::Has(const std::string& key) const {
   return it != node_->value->end() && !it->is_null();
 }
 
+bool JsonReader::IsObject(const std::string& key) const {
+  return Has(key) && node_->value->find(key)->is_object();
+}
+
 double JsonReader::Number(const std::string& key, double min, double max) {
   const Json* value = node_->Ask(key);
   const std::string want = WantedRange("a number", min, max);

@@ -23,6 +23,7 @@ class JsonReader {
   // Duplicate keys, NaN and a document that is not an object are errors.
   static Result<JsonReader> Parse(const std::string& text, const std::string& name);
 
+  bool IsObject(const std::string& key) const;  // for keys that allow two forms; marks nothing
   bool Has(const std::string& key) const;  // present and not null; does not mark the key as read
 
   double Number(const std::string& key, double min, double max);
