@@ -8,6 +8,7 @@
 
 #include "base/result.h"
 #include "base/units.h"
+#include "optics/back_surface.h"
 #include "optics/lens.h"
 #include "optics/prescription.h"
 
@@ -23,10 +24,12 @@ struct LensOrder {
   Medium medium;
   std::optional<Diopters> base_curve;         // true power at the lens index; by rule when absent
   std::optional<double> center_thickness_mm;  // by rule when absent
-  double min_center_thickness_mm = 1.5;       // rule for minus lenses
-  double min_edge_thickness_mm = 1.0;         // rule for plus lenses, over the whole contour
+  double min_center_thickness_mm = 1.5;       // what fixes the thickness of minus lenses
+  double min_edge_thickness_mm = 1.0;         // what fixes that of plus ones, over the contour
   std::vector<Eigen::Vector2d> contour_mm;    // closed polygon, either orientation; empty: round
   double diameter_mm = 60;                    // of the round lens when there is no contour
+  double vertex_distance_mm = 13;             // back vertex to cornea, for the magnification
+  ToricGenerator generator = ToricGenerator::kAcrossMinusAxis;
 };
 
 struct LensDesign {
@@ -39,7 +42,10 @@ struct LensDesign {
   double mass_g = 0;
 };
 
-// Fails with what is impossible and what would be possible (no real sag at the rim, tau F1 > 0.5).
+// Prism is ground: the back surface turns about its vertex, and its curvatures are those that keep
+// the power along the deviated ray exact. The thickness is the least with which the centre and
+// every point of the contour keep their minima, solved together with the back curve. Fails with
+// what is impossible and what would be possible (no real sag at the rim, tau F1 > 0.5).
 Result<LensDesign> DesignLens(const LensOrder& order);
 
 }  // namespace lorgnette

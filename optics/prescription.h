@@ -27,9 +27,18 @@ struct Prescription {
   double pd_mm() const { return pd_right_mm + pd_left_mm; }
 };
 
+// What a prescription may say; anything beyond is an error that names the key.
+inline constexpr double kMaxSphere = 40, kMaxCylinder = 15, kMaxAdd = 6;  // D
+inline constexpr double kMaxPrism = 20;                                   // prism D
+inline constexpr double kMinPd_mm = 40, kMaxPd_mm = 85;
+inline constexpr double kMinVertex_mm = 5, kMaxVertex_mm = 25;
+
 // Reads a prescription in our JSON (docs/prescription.md). `name` is the file's name for errors:
 //   {"OD": {"sphere": -4.25, "cylinder": -0.75, "axis": 160}, "OS": {"sphere": -4.5}, "PD": 64}
-// Unknown keys, values out of range and an axis without a cylinder are errors.
+// Per eye: sphere (required), cylinder with axis, add, and prism_in/prism_up or
+// "prism": [{"amount": 1.5, "base": "in"}]. PD is binocular, or {"right": 31.5, "left": 32.5}.
+// Unknown keys, values out of range, an axis without a cylinder and a cylinder without an axis are
+// errors.
 Result<Prescription> ParsePrescription(const std::string& json_text, const std::string& name);
 
 }  // namespace lorgnette

@@ -8,7 +8,9 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <concepts>
 #include <optional>
+#include <utility>
 #include <variant>
 #include <vector>
 
@@ -46,7 +48,10 @@ class Surface {
  public:
   using Shape = std::variant<SphereSurface, TorusSurface>;
   Surface() = default;
-  explicit(false) Surface(Shape shape) : shape_(shape) {}
+  template <typename S>
+  requires std::constructible_from<Shape, S> &&
+      (!std::same_as<std::remove_cvref_t<S>, Surface>)explicit(false) Surface(S shape)
+      : shape_(std::move(shape)) {}
   const Shape& shape() const { return shape_; }
 
   // nullopt where the surface does not exist (|c| h > 1 and the like), and for no other reason.

@@ -23,6 +23,11 @@ Eigen::Vector3d Reflect(const Eigen::Vector3d& incident, const Eigen::Vector3d& 
 //   cos_incident  |cos| of the angle of incidence;  eta  n_before / n_after
 double FresnelReflectance(double cos_incident, double eta);
 
+// Turns directions of the back surface's own axes into the lens frame (the ground prism's tilt).
+Eigen::Matrix3d BackRotation(const Lens& lens);
+// Hit of the back surface, ray and result in the lens frame.
+std::optional<SurfaceHit> IntersectBack(const Lens& lens, const Ray& ray);
+
 // A ray through both surfaces, in either direction (the sign of direction.z says which face comes
 // first). `exit` is set when status is kOk; `first` and `second` are the hits reached, in the lens
 // frame, normals toward +z.
