@@ -4,8 +4,6 @@
 #include <cmath>
 #include <limits>
 
-#include "optics/trace.h"
-
 namespace lorgnette {
 namespace {
 
@@ -19,13 +17,6 @@ double Radius(double power_D, double index_step) {
 }
 
 }  // namespace
-
-std::optional<double> AxialThickness(const Lens& lens, double x, double y) {
-  const auto front = lens.front.Jet(x, y);
-  const auto back = IntersectBack(lens, {{x, y, 0}, {0, 0, 1}});
-  if (!front || !back) return std::nullopt;
-  return back->point.z() - front->z;
-}
 
 LensSheet MakeLensSheet(const LensDesign& design, const SheetRequest& request) {
   const Lens& lens = design.lens;
@@ -64,7 +55,7 @@ LensSheet MakeLensSheet(const LensDesign& design, const SheetRequest& request) {
   sheet.edge_thickness_max_mm = design.max_edge_thickness_mm;
   sheet.mass_g = design.mass_g;
 
-  sheet.pupil_mm = request.vertex_distance_mm + kEntrancePupilDepth_mm;
+  sheet.pupil_mm = design.order.vertex_distance_mm + kEntrancePupilDepth_mm;
   sheet.shape_factor = {ShapeFactor(f_along, t, n), ShapeFactor(f_across, t, n)};
   sheet.power_factor = {PowerFactor(Diopters(sheet.back_vertex_power_D.along), sheet.pupil_mm),
                         PowerFactor(Diopters(sheet.back_vertex_power_D.across), sheet.pupil_mm)};

@@ -3,9 +3,7 @@
 // JSON and the optician's page, which therefore agree to the last digit.
 #pragma once
 
-#include <Eigen/Core>
 #include <optional>
-#include <vector>
 
 #include "optics/design.h"
 #include "optics/magnification.h"
@@ -23,7 +21,6 @@ struct MeridianPair {
 
 // What the sheet is asked besides the lens itself.
 struct SheetRequest {
-  double vertex_distance_mm = 13;     // back vertex to cornea, as worn
   ObserverGeometry observer;          // camera and feature of the face
   double feature_height_mm = 5.85;    // of the feature off the axis (an iris's edge)
   double feature_meridian_deg = 180;  // TABO meridian on which the feature lies
@@ -42,7 +39,7 @@ struct LensSheet {
   double edge_thickness_min_mm = 0, edge_thickness_max_mm = 0;  // over the contour, axial
   double mass_g = 0;
 
-  // Distant object, entrance pupil at vertex distance + kEntrancePupilDepth_mm.
+  // Distant object, entrance pupil at the order's vertex distance + kEntrancePupilDepth_mm.
   double pupil_mm = 0;
   MeridianPair shape_factor, power_factor, spectacle_magnification;
 
@@ -53,9 +50,5 @@ struct LensSheet {
 };
 
 LensSheet MakeLensSheet(const LensDesign& design, const SheetRequest& request);
-
-// Thickness along the axis' direction at (x, y) of the lens frame; nullopt where a surface ends.
-// Negative where the surfaces have crossed.
-std::optional<double> AxialThickness(const Lens& lens, double x, double y);
 
 }  // namespace lorgnette
