@@ -1,0 +1,134 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "render/contour_index.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "base/check.h"
+
+namespace lorgnette {
+namespace {
+
+constexpr int kCellsAcross = 96;  // along the longer side
+
+double Cross(const Eigen::Vector2d& a, const Eigen::Vector2d& b) {
+  return a.x() * b.y() - a.y() * b.x();
+}
+
+double SquaredDistanceToSegment(const Eigen::Vector2d& p, const Eigen::Vector2d& a,
+                                const Eigen::Vector2d& b) {
+  const Eigen::Vector2d ab = b - a;
+  const double length2 = ab.squaredNorm();
+  const double s = length2 > 0 ? std::clamp((p - a).dot(ab) / length2, 0.0, 1.0) : 0.0;
+  return (p - a - s * ab).squaredNorm();
+}
+
+}  // namespace
+
+ContourIndex::ContourIndex(std::vector<Eigen::Vector2d> polygon) : polygon_(std::move(polygon)) {
+  LG_CHECK_GE(polygon_.size(), 3u);
+  const std::size_t n = polygon_.size();
+  double twice_area = 0;
+  for (std::size_t i = 0; i < n; ++i) twice_area += Cross(polygon_[i], polygon_[(i + 1) % n]);
+  if (twice_area < 0) std::reverse(polygon_.begin(), polygon_.end());
+
+  low_ = high_ = polygon_.front();
+  for (const Eigen::Vector2d& p : polygon_) {
+    low_ = low_.cwiseMin(p);
+    high_ = high_.cwiseMax(p);
+  }
+  for (std::size_t i = 0; i < n; ++i) {
+    const Eigen::Vector2d before = (polygon_[i] - polygon_[(i + n - 1) % n]).normalized();
+    const Eigen::Vector2d after = (polygon_[(i + 1) % n] - polygon_[i]).normalized();
+    const Eigen::Vector2d along = before + after;
+    vertex_normals_.push_back(Eigen::Vector2d(along.y(), -along.x()).normalized());
+  }
+
+  const Eigen::Vector2d size = high_ - low_;
+  cell_ = std::max(size.maxCoeff() / kCellsAcross, 1e-9);
+  half_diagonal_ = cell_ * std::sqrt(0.5);
+  columns_ = std::max(1, int(std::ceil(size.x() / cell_)));
+  rows_ = std::max(1, int(std::ceil(size.y() / cell_)));
+  row_edges_.resize(std::size_t(rows_));
+  for (std::size_t i = 0; i < n; ++i) {
+    const double y0 = polygon_[i].y(), y1 = polygon_[(i + 1) % n].y();
+    const int first = std::clamp(int((std::min(y0, y1) - low_.y()) / cell_), 0, rows_ - 1);
+    const int last = std::clamp(int((std::max(y0, y1) - low_.y()) / cell_), 0, rows_ - 1);
+    for (int row = first; row <= last; ++row) row_edges_[std::size_t(row)].push_back(int(i));
+  }
+
+  std::vector<float> distance;
+  for (int row = 0; row < rows_; ++row) {
+    for (int column = 0; column < columns_; ++column) {
+      const Eigen::Vector2d centre = low_ + cell_ * Eigen::Vector2d(column + 0.5, row + 0.5);
+      double nearest2 = std::numeric_limits<double>::infinity();
+      for (std::size_t i = 0; i < n; ++i) {
+        nearest2 = std::min(nearest2,
+                            SquaredDistanceToSegment(centre, polygon_[i], polygon_[(i + 1) % n]));
+      }
+      const double sign = Contains(centre.x(), centre.y()) ? 1 : -1;
+      distance.push_back(float(sign * std::sqrt(nearest2)));
+    }
+  }
+  distance_ = std::move(distance);
+}
+
+bool ContourIndex::Contains(double x, double y) const {
+  if (!(x >= low_.x() && x <= high_.x() && y >= low_.y() && y <= high_.y())) return false;
+  const int column = std::clamp(int((x - low_.x()) / cell_), 0, columns_ - 1);
+  const int row = std::clamp(int((y - low_.y()) / cell_), 0, rows_ - 1);
+  if (!distance_.empty()) {
+    const double centre = distance_[std::size_t(row * columns_ + column)];
+    if (std::abs(centre) > half_diagonal_) return centre > 0;
+  }
+  bool inside = false;
+  for (const int i : row_edges_[std::size_t(row)]) {
+    const Eigen::Vector2d& a = polygon_[std::size_t(i)];
+    const Eigen::Vector2d& b = polygon_[(std::size_t(i) + 1) % polygon_.size()];
+    if ((a.y() > y) == (b.y() > y)) continue;
+    if (x < a.x() + (y - a.y()) / (b.y() - a.y()) * (b.x() - a.x())) inside = !inside;
+  }
+  return inside;
+}
+
+double ContourIndex::Clearance(double x, double y) const {
+  if (!(x >= low_.x() && x <= high_.x() && y >= low_.y() && y <= high_.y())) {
+    return -std::numeric_limits<double>::min();
+  }
+  const int column = std::clamp(int((x - low_.x()) / cell_), 0, columns_ - 1);
+  const int row = std::clamp(int((y - low_.y()) / cell_), 0, rows_ - 1);
+  return distance_[std::size_t(row * columns_ + column)] - half_diagonal_;
+}
+
+std::optional<ContourIndex::Crossing> ContourIndex::FirstCrossing(const Eigen::Vector2d& p,
+                                                                  const Eigen::Vector2d& d,
+                                                                  double t_min,
+                                                                  double t_max) const {
+  const std::size_t n = polygon_.size();
+  double best = t_max, best_s = 0;
+  std::size_t best_edge = n;
+  double before = Cross(d, polygon_[0] - p);
+  for (std::size_t i = 0; i < n; ++i) {
+    const std::size_t j = i + 1 == n ? 0 : i + 1;
+    const double after = Cross(d, polygon_[j] - p);
+    if ((before > 0) != (after > 0)) {
+      const double s = before / (before - after);
+      const Eigen::Vector2d crossing = polygon_[i] + s * (polygon_[j] - polygon_[i]);
+      const double t = (crossing - p).dot(d) / d.squaredNorm();
+      if (t > t_min && t < best) {
+        best = t;
+        best_s = s;
+        best_edge = i;
+      }
+    }
+    before = after;
+  }
+  if (best_edge == n) return std::nullopt;
+  const std::size_t next = best_edge + 1 == n ? 0 : best_edge + 1;
+  return Crossing{
+      best,
+      ((1 - best_s) * vertex_normals_[best_edge] + best_s * vertex_normals_[next]).normalized()};
+}
+
+}  // namespace lorgnette

@@ -1,0 +1,46 @@
+// SPDX-License-Identifier: Apache-2.0
+// A closed polygon in the plane with fast answers: inside or not, how far the boundary is at
+// least, and where a line leaves it. The outline of a cut lens.
+#pragma once
+
+#include <Eigen/Core>
+#include <optional>
+#include <vector>
+
+namespace lorgnette {
+
+class ContourIndex {
+ public:
+  // polygon: at least 3 distinct points, no repeated end point, either orientation (kept
+  // counter-clockwise inside).
+  explicit ContourIndex(std::vector<Eigen::Vector2d> polygon);
+
+  const std::vector<Eigen::Vector2d>& polygon() const { return polygon_; }
+  const Eigen::Vector2d& low() const { return low_; }
+  const Eigen::Vector2d& high() const { return high_; }
+
+  // Exact (crossing number); false for a NaN.
+  bool Contains(double x, double y) const;
+  // A lower bound of the signed distance to the boundary, positive inside, at most one grid cell
+  // too small. What is outside the bounding box gets a negative number.
+  double Clearance(double x, double y) const;
+
+  // Where the line p + t d first crosses the boundary with t in (t_min, t_max).
+  struct Crossing {
+    double t = 0;
+    Eigen::Vector2d normal;  // unit, outward, interpolated between the vertices' normals
+  };
+  std::optional<Crossing> FirstCrossing(const Eigen::Vector2d& p, const Eigen::Vector2d& d,
+                                        double t_min, double t_max) const;
+
+ private:
+  std::vector<Eigen::Vector2d> polygon_;
+  std::vector<Eigen::Vector2d> vertex_normals_;
+  Eigen::Vector2d low_{0, 0}, high_{0, 0};
+  int columns_ = 0, rows_ = 0;
+  double cell_ = 1, half_diagonal_ = 0;
+  std::vector<float> distance_;              // signed, of the cells' centres
+  std::vector<std::vector<int>> row_edges_;  // edges that touch each row of cells
+};
+
+}  // namespace lorgnette
