@@ -38,6 +38,9 @@ struct LensOpening {
   // mm, in the opening's plane. `aperture_mm` is the visible inner edge of the rim (lip).
   std::vector<Eigen::Vector2d> contour_mm;
   std::vector<Eigen::Vector2d> aperture_mm;
+  // z of the groove bottom in opening coordinates, one a contour point (a wrapped rim follows a
+  // curve); mean 0; empty: flat.
+  std::vector<double> groove_height_mm;
 };
 
 struct Boxing {

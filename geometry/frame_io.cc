@@ -1,0 +1,84 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "geometry/frame_io.h"
+
+#include <algorithm>
+#include <cstdlib>
+#include <filesystem>
+#include <system_error>
+
+#include "base/atomic_file.h"
+#include "geometry/parametric_frame.h"
+
+namespace lorgnette {
+namespace {
+
+namespace fs = std::filesystem;
+
+bool HasFrames(const fs::path& data) {
+  std::error_code error;
+  return fs::is_directory(data / "frames", error);
+}
+
+Result<FrameParameters> ReadParameters(const std::string& path) {
+  LG_ASSIGN(const std::string text, ReadFile(path));
+  return ParseFrameParameters(text, path);
+}
+
+}  // namespace
+
+std::string DataDirectory() {
+  if (const char* chosen = std::getenv("LORGNETTE_DATA")) return chosen;
+  std::error_code error;
+  const fs::path program = fs::read_symlink("/proc/self/exe", error);
+  if (!error) {
+    for (const fs::path& beside : {program.parent_path() / ".." / "data",
+                                   program.parent_path() / ".." / "share" / "lorgnette"}) {
+      if (HasFrames(beside)) return beside.lexically_normal().string();
+    }
+  }
+  return LORGNETTE_DATA_DIR;
+}
+
+Result<std::vector<ShippedFrame>> ListShippedFrames() {
+  const fs::path folder = fs::path(DataDirectory()) / "frames";
+  std::error_code error;
+  fs::directory_iterator entries(folder, error);
+  if (error) return Failure(folder.string() + ": got " + error.message() + ", want our frames");
+  std::vector<ShippedFrame> frames;
+  for (const fs::directory_entry& entry : entries) {
+    if (entry.path().extension() != ".json") continue;
+    LG_ASSIGN(const FrameParameters parameters, ReadParameters(entry.path().string()));
+    frames.push_back(
+        {entry.path().stem().string(), parameters.description, entry.path().string()});
+  }
+  std::sort(frames.begin(), frames.end(),
+            [](const ShippedFrame& a, const ShippedFrame& b) { return a.name < b.name; });
+  return frames;
+}
+
+Result<FrameModel> LoadFrame(const std::string& name_or_path) {
+  const fs::path given(name_or_path);
+  std::error_code error;
+  if (given.extension().empty() && !given.has_parent_path()) {
+    const fs::path shipped = fs::path(DataDirectory()) / "frames" / (name_or_path + ".json");
+    if (fs::exists(shipped, error)) {
+      LG_ASSIGN(const FrameParameters parameters, ReadParameters(shipped.string()));
+      return BuildFrame(parameters);
+    }
+    std::string names;
+    if (const auto all = ListShippedFrames()) {
+      for (const ShippedFrame& frame : *all) names += (names.empty() ? "" : ", ") + frame.name;
+    }
+    return UsageError("--frame: got \"" + name_or_path + "\", want a file or one of " + names);
+  }
+  std::string extension = given.extension().string();
+  std::transform(extension.begin(), extension.end(), extension.begin(),
+                 [](unsigned char c) { return char(std::tolower(c)); });
+  if (extension == ".json") {
+    LG_ASSIGN(const FrameParameters parameters, ReadParameters(name_or_path));
+    return BuildFrame(parameters);
+  }
+  return UsageError(name_or_path + ": got a file of type \"" + extension + "\", want .json");
+}
+
+}  // namespace lorgnette

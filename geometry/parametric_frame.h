@@ -1,0 +1,22 @@
+// SPDX-License-Identifier: Apache-2.0
+// Builds an eyeglass frame from its parameters: closed meshes with the normals of the smooth solid.
+#pragma once
+
+#include "geometry/frame_model.h"
+#include "geometry/frame_parameters.h"
+
+namespace lorgnette {
+
+// Fineness of the meshes and of the stored contour.
+struct FrameTessellation {
+  int rim_rings = 288;
+  int contour_points = 720;
+};
+
+// Rims, bridges, pads, end pieces, hinges and temples, the right half the mirror image of the left.
+// Parts overlap where they join; each is closed, oriented outward and free of self-intersection.
+// Openings are the parameters' own curves, not measured from the meshes (geometry/contour.h is).
+// Tested: boxing exact to 1e-3 mm of the polygon, mirror symmetry exact.
+FrameModel BuildFrame(const FrameParameters& parameters, const FrameTessellation& fineness = {});
+
+}  // namespace lorgnette
