@@ -14,6 +14,8 @@
 
 namespace lorgnette {
 
+inline constexpr double kCertificateCamera_mm = 500;
+
 // One quantity of the certificate.
 struct Measurement {
   std::string quantity;        // "back vertex power, axis meridian"
@@ -45,7 +47,11 @@ class CertifiedLens {
   Certificate certificate_;
 };
 
-// Fails, naming the quantity with both values, when a measurement leaves its tolerance.
+// Traces through the lens: power in both principal meridians, cylinder, axis, prism, thickness at
+// the centre and on the outline, front curve, and the magnification that a camera
+// kCertificateCamera before the lens sees at the wearer's iris. Source: docs/optics.md,
+// "Certificate". Fails, naming the quantity with both values, when a measurement leaves its
+// tolerance.
 Result<CertifiedLens> Certify(LensDesign design);
 
 }  // namespace lorgnette

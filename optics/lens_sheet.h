@@ -7,6 +7,7 @@
 
 #include "optics/design.h"
 #include "optics/magnification.h"
+#include "optics/outline.h"
 #include "optics/paraxial.h"
 
 namespace lorgnette {
