@@ -1,0 +1,83 @@
+// SPDX-License-Identifier: Apache-2.0
+// What reader and writer share of libav: owners, errors, orientation, colour. Private to render/.
+#pragma once
+
+extern "C" {
+#include <libavcodec/avcodec.h>
+#include <libavformat/avformat.h>
+#include <libswscale/swscale.h>
+}
+
+#include <memory>
+#include <string>
+
+#include "base/image.h"
+#include "base/result.h"
+
+namespace lorgnette {
+
+namespace av {
+
+struct Deleter {
+  void operator()(AVFrame* p) const { av_frame_free(&p); }
+  void operator()(AVPacket* p) const { av_packet_free(&p); }
+  void operator()(AVCodecContext* p) const { avcodec_free_context(&p); }
+  void operator()(SwsContext* p) const { sws_freeContext(p); }
+};
+struct InputDeleter {
+  void operator()(AVFormatContext* p) const { avformat_close_input(&p); }
+};
+using Frame = std::unique_ptr<AVFrame, Deleter>;
+using Packet = std::unique_ptr<AVPacket, Deleter>;
+using Codec = std::unique_ptr<AVCodecContext, Deleter>;
+using Scaler = std::unique_ptr<SwsContext, Deleter>;
+using Input = std::unique_ptr<AVFormatContext, InputDeleter>;
+
+// libav's words for an error code; plain ones for "invalid data" and the like.
+std::string Reason(int error);
+
+// Errors reach the user as one sentence of ours, so libav and x264 write nothing themselves.
+void SilenceLog();
+
+// Opens a container and finds its streams; the error names the path.
+Result<Input> OpenInput(const std::string& path);
+// Decoder for one stream, opened.
+Result<Codec> OpenDecoder(const AVStream& stream, const std::string& path);
+
+// Format without the deprecated "J" names; their meaning (full range) goes to *full_range.
+AVPixelFormat PlainFormat(int format, bool* full_range);
+
+// How YUV of this picture has to be read: with unspecified tags resolved by size.
+struct ColourReading {
+  int matrix = SWS_CS_ITU709;  // SWS_CS_*
+  bool full_range = false;
+  bool left_sited = true;  // chroma samples level with the left luma column (video), or centred
+};
+ColourReading ReadingOf(const AVFrame& frame);
+// SWS_CS_* of a tag; by size when it names none.
+int MatrixOf(AVColorSpace space, int width, int height);
+
+// Converters between `format` and RGB24 of one size, with accurate rounding.
+Result<Scaler> ScalerToRgb(int width, int height, AVPixelFormat format, const ColourReading& c);
+Result<Scaler> ScalerFromRgb(int width, int height, AVPixelFormat format, const ColourReading& c);
+
+}  // namespace av
+
+// A picture's turn, by quarters, and mirror: upright = matrix * stored, about the centre; columns
+// to the right, rows down.
+struct Orientation {
+  int xx = 1, xy = 0, yx = 0, yy = 1;
+  bool is_upright() const { return xx == 1 && yy == 1; }
+  bool swaps_sides() const { return xy != 0; }
+  Orientation Inverse() const { return {xx, yx, xy, yy}; }
+};
+// Of a stream's display matrix; identity when there is none, or when it is no quarter turn.
+Orientation OrientationOf(const AVStream& stream);
+ImageRgb8 Oriented(ImageRgb8 image, const Orientation& orientation);
+
+struct DecodedPicture {
+  av::Frame frame;  // as stored in the file
+  ImageRgb8 rgb;    // what the reader made of it, upright
+};
+
+}  // namespace lorgnette

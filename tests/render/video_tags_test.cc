@@ -1,0 +1,261 @@
+// SPDX-License-Identifier: Apache-2.0
+// Properties that come with real videos: sound, rotation, colour tags. The sources are made by the
+// ffmpeg program; without it these tests are skipped.
+extern "C" {
+#include <libavformat/avformat.h>
+}
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "base/atomic_file.h"
+#include "render/video_av.h"
+#include "render/video_pixels.h"
+#include "tests/render/video_test_util.h"
+
+namespace lorgnette {
+namespace {
+
+#define SKIP_WITHOUT_FFMPEG() \
+  if (!HasFfmpeg()) GTEST_SKIP() << "needs the ffmpeg program to make its input"
+
+// Payloads of the sound packets of a file, with their times in seconds.
+struct SoundPacket {
+  std::string bytes;
+  double time_s = 0;
+};
+std::vector<SoundPacket> SoundPackets(const std::string& path) {
+  const auto input = av::OpenInput(path);
+  EXPECT_TRUE(input);
+  std::vector<SoundPacket> packets;
+  const av::Packet packet(av_packet_alloc());
+  while (input && av_read_frame(input->get(), packet.get()) >= 0) {
+    const AVStream* stream = (*input)->streams[packet->stream_index];
+    if (stream->codecpar->codec_type == AVMEDIA_TYPE_AUDIO) {
+      packets.push_back({std::string(reinterpret_cast<char*>(packet->data), packet->size),
+                         static_cast<double>(packet->pts) * av_q2d(stream->time_base)});
+    }
+    av_packet_unref(packet.get());
+  }
+  return packets;
+}
+
+TEST_F(VideoTest, SoundIsCopiedPacketByPacket) {
+  SKIP_WITHOUT_FFMPEG();
+  ASSERT_TRUE(
+      Ffmpeg("-f lavfi -i testsrc=s=64x48:d=2 -f lavfi -i sine=d=2 -pix_fmt yuv420p "
+             "-c:v libx264 -c:a aac in.mp4"));
+  ASSERT_TRUE(Copy(Path("in.mp4"), Path("out.mp4")));
+  const auto in = SoundPackets(Path("in.mp4")), out = SoundPackets(Path("out.mp4"));
+  ASSERT_GT(in.size(), 50u);
+  ASSERT_EQ(in.size(), out.size());
+  for (std::size_t i = 0; i < in.size(); ++i) {
+    EXPECT_EQ(in[i].bytes, out[i].bytes);
+    EXPECT_DOUBLE_EQ(in[i].time_s, out[i].time_s);
+  }
+}
+
+TEST_F(VideoTest, SoundOfAPartStartsWithIt) {
+  SKIP_WITHOUT_FFMPEG();
+  ASSERT_TRUE(
+      Ffmpeg("-f lavfi -i testsrc=s=64x48:d=2 -f lavfi -i sine=d=2 -pix_fmt yuv420p "
+             "-c:v libx264 -c:a aac in.mp4"));
+  auto reader = VideoReader::Open(Path("in.mp4"));
+  ASSERT_TRUE(reader);
+  auto writer = VideoWriter::Create(Path("out.mp4"), *reader, {.start_at_first_frame = true});
+  ASSERT_TRUE(writer);
+  for (int i = 0; i < 40; ++i) {
+    const auto frame = reader->Next();
+    ASSERT_TRUE(frame && *frame);
+    if (i >= 10 && i < 20) {
+      ASSERT_TRUE(writer->Write(**frame));
+    }
+  }
+  ASSERT_TRUE(writer->Finish());
+  // Frames 10..19 of 25 a second: 0.4 s from 0.4 s on, in packets of 1024/44100 s = 0.0232 s.
+  const auto sound = SoundPackets(Path("out.mp4"));
+  EXPECT_EQ(sound.size(), 17u);
+  EXPECT_GE(sound.front().time_s, 0);
+  EXPECT_LT(sound.front().time_s, 1024.0 / 44100);
+}
+
+TEST_F(VideoTest, SoundThatTheContainerCannotHoldIsAUsageError) {
+  SKIP_WITHOUT_FFMPEG();
+  ASSERT_TRUE(
+      Ffmpeg("-f lavfi -i testsrc=s=64x48:d=1 -f lavfi -i sine=d=1 -pix_fmt yuv420p "
+             "-c:v libx264 -c:a pcm_s16le in.mov"));
+  const Status copied = Copy(Path("in.mov"), Path("out.mp4"));
+  ASSERT_FALSE(copied);
+  EXPECT_EQ(copied.error().kind, ErrorKind::kUsage);
+  EXPECT_EQ(copied.error().message, Path("out.mp4") + ": this container cannot hold the sound " +
+                                        "(pcm_s16le) of " + Path("in.mov") + ", want .mkv or .mov");
+  EXPECT_TRUE(Copy(Path("in.mov"), Path("out.mov")));
+}
+
+TEST_F(VideoTest, RotationIsAppliedToTheFramesAndKeptInTheFile) {
+  SKIP_WITHOUT_FFMPEG();
+  ASSERT_TRUE(WritePicture(Picture(64, 48, 0), Path("in.png")));
+  ASSERT_TRUE(Ffmpeg("-loop 1 -i in.png -frames:v 3 -pix_fmt yuv420p -crf 5 flat.mp4"));
+  const auto upright = ReadAll(Path("flat.mp4"));
+  ASSERT_TRUE(upright);
+  for (const int turn : {90, 180, 270}) {
+    ASSERT_TRUE(
+        Ffmpeg("-i flat.mp4 -c copy -metadata:s:v rotate=" + std::to_string(turn) + " turned.mp4"));
+    const auto turned = ReadAll(Path("turned.mp4"));
+    ASSERT_TRUE(turned);
+    const ImageRgb8& a = upright->front().rgb;
+    const ImageRgb8& b = turned->front().rgb;
+    ASSERT_EQ(b.width, turn == 180 ? 64 : 48);
+    ASSERT_EQ(b.height, turn == 180 ? 48 : 64);
+    // What ffmpeg shows of the file, turned by itself.
+    ASSERT_TRUE(Ffmpeg("-i turned.mp4 -frames:v 1 shown.png"));
+    const auto shown = ReadPicture(Path("shown.png"));
+    ASSERT_TRUE(shown);
+    EXPECT_LT(Compare(b, *shown).mean, 2.0);  // its own chroma filter
+    EXPECT_NE(a.data, b.data);
+    ASSERT_TRUE(Copy(Path("turned.mp4"), Path("out.mp4")));
+    const auto out = ReadAll(Path("out.mp4"));
+    ASSERT_TRUE(out);
+    EXPECT_LT(Compare(out->front().rgb, b).mean, 1.0);
+    const auto input = av::OpenInput(Path("out.mp4"));
+    ASSERT_TRUE(input);
+    EXPECT_EQ((*input)->streams[0]->codecpar->width, 64);
+    EXPECT_FALSE(OrientationOf(*(*input)->streams[0]).is_upright());
+  }
+}
+
+TEST_F(VideoTest, FileCutBehindItsIndexNamesTheTimeReached) {
+  SKIP_WITHOUT_FFMPEG();
+  ASSERT_TRUE(
+      Ffmpeg("-f lavfi -i testsrc=s=64x48:d=4 -pix_fmt yuv420p -c:v libx264 "
+             "-movflags faststart in.mp4"));
+  const auto bytes = ReadFile(Path("in.mp4"));
+  ASSERT_TRUE(bytes);
+  ASSERT_TRUE(WriteFileAtomically(Path("cut.mp4"), bytes->substr(0, bytes->size() * 3 / 4)));
+  const auto frames = ReadAll(Path("cut.mp4"));
+  ASSERT_FALSE(frames);
+  EXPECT_THAT(frames.error().message,
+              testing::MatchesRegex(Path("cut.mp4") + ": is cut short or broken at [0-9.]+ s .*"));
+}
+
+struct ColourCase {
+  const char* tag;
+  double kr, kb;
+  bool full;
+};
+
+class VideoColour : public VideoTest, public testing::WithParamInterface<ColourCase> {};
+
+// Flat fields of known Y, Cb, Cr, stored without loss, against the closed form of the standards.
+TEST_P(VideoColour, MatrixAndRangeOfTheTagsAreHonoured) {
+  SKIP_WITHOUT_FFMPEG();
+  const ColourCase& c = GetParam();
+  constexpr int kFields[][3] = {{81, 100, 160}, {150, 120, 110}, {60, 160, 120}, {180, 128, 128}};
+  constexpr int kSize = 16;
+  std::string raw;
+  for (const auto& field : kFields) {
+    for (const int value : field) raw.append(kSize * kSize, static_cast<char>(value));
+  }
+  ASSERT_TRUE(WriteFileAtomically(Path("in.yuv"), raw));
+  ASSERT_TRUE(Ffmpeg("-f rawvideo -pix_fmt yuv444p -s 16x16 -i in.yuv -c:v ffv1 -color_range " +
+                     std::string(c.full ? "pc" : "tv") + " -colorspace " + c.tag + " in.mkv"));
+  const auto frames = ReadAll(Path("in.mkv"));
+  ASSERT_TRUE(frames) << frames.error().message;
+  ASSERT_EQ(frames->size(), std::size(kFields));
+  for (std::size_t i = 0; i < frames->size(); ++i) {
+    const double y = c.full ? kFields[i][0] / 255.0 : (kFields[i][0] - 16) / 219.0;
+    const double cb = (kFields[i][1] - 128) / (c.full ? 255.0 : 224.0);
+    const double cr = (kFields[i][2] - 128) / (c.full ? 255.0 : 224.0);
+    const double r = y + 2 * (1 - c.kr) * cr;
+    const double b = y + 2 * (1 - c.kb) * cb;
+    const double g = (y - c.kr * r - c.kb * b) / (1 - c.kr - c.kb);
+    const std::uint8_t* p = (*frames)[i].rgb.at(5, 5);
+    // Half a code of rounding, and less than half of swscale's 13-bit coefficients.
+    EXPECT_NEAR(p[0], 255 * r, 1.0) << i;
+    EXPECT_NEAR(p[1], 255 * g, 1.0) << i;
+    EXPECT_NEAR(p[2], 255 * b, 1.0) << i;
+  }
+  // The tags survive a copy, and the colours with them.
+  ASSERT_TRUE(Copy(Path("in.mkv"), Path("out.mkv")));
+  const auto in = av::OpenInput(Path("in.mkv")), out = av::OpenInput(Path("out.mkv"));
+  ASSERT_TRUE(in && out);
+  const AVCodecParameters& from = *(*in)->streams[0]->codecpar;
+  const AVCodecParameters& to = *(*out)->streams[0]->codecpar;
+  EXPECT_EQ(to.color_space, from.color_space);
+  EXPECT_EQ(to.color_range, from.color_range);
+  const auto copies = ReadAll(Path("out.mkv"));
+  ASSERT_TRUE(copies);
+  for (std::size_t i = 0; i < copies->size(); ++i) {
+    EXPECT_LE(Compare((*copies)[i].rgb, (*frames)[i].rgb).greatest, 3);  // crf 16, flat fields
+  }
+}
+
+INSTANTIATE_TEST_SUITE_P(Tags, VideoColour,
+                         testing::Values(ColourCase{"bt709", 0.2126, 0.0722, false},
+                                         ColourCase{"bt709", 0.2126, 0.0722, true},
+                                         ColourCase{"smpte170m", 0.299, 0.114, false},
+                                         ColourCase{"bt470bg", 0.299, 0.114, true}),
+                         [](const auto& parameter) {
+                           return std::string(parameter.param.tag) +
+                                  (parameter.param.full ? "Full" : "Limited");
+                         });
+
+av::Frame MakeFrame(int width, int height, AVPixelFormat format, std::uint8_t value) {
+  av::Frame frame(av_frame_alloc());
+  frame->width = width;
+  frame->height = height;
+  frame->format = format;
+  EXPECT_EQ(av_frame_get_buffer(frame.get(), 0), 0);
+  for (const AVBufferRef* buffer : frame->buf) {
+    if (buffer != nullptr) std::fill_n(buffer->data, buffer->size, value);
+  }
+  return frame;
+}
+
+TEST(RestoreUntouched, GivesBackExactlyTheSamplesOfUnchangedPixels) {
+  const ImageRgb8 decoded(5, 4);
+  ImageRgb8 edited = decoded;
+  edited.at(3, 1)[2] = 9;  // one pixel of the chroma block (1, 0)
+  const av::Frame original = MakeFrame(5, 4, AV_PIX_FMT_YUV420P, 77);
+  const av::Frame frame = MakeFrame(5, 4, AV_PIX_FMT_YUV420P, 11);
+  ASSERT_TRUE(RestoreUntouched(edited, decoded, *original, *frame));
+  for (int y = 0; y < 4; ++y) {
+    for (int x = 0; x < 5; ++x) {
+      const int expected = x == 3 && y == 1 ? 11 : 77;
+      EXPECT_EQ(frame->data[0][y * frame->linesize[0] + x], expected) << x << ',' << y;
+    }
+  }
+  for (int plane : {1, 2}) {
+    for (int y = 0; y < 2; ++y) {
+      for (int x = 0; x < 3; ++x) {
+        const int expected = x == 1 && y == 0 ? 11 : 77;
+        EXPECT_EQ(frame->data[plane][y * frame->linesize[plane] + x], expected) << x << ',' << y;
+      }
+    }
+  }
+}
+
+TEST(RestoreUntouched, LeavesOtherFormatsAlone) {
+  const ImageRgb8 image(4, 4);
+  const av::Frame original = MakeFrame(4, 4, AV_PIX_FMT_YUV444P, 77);
+  const av::Frame frame = MakeFrame(4, 4, AV_PIX_FMT_YUV420P, 11);
+  EXPECT_FALSE(RestoreUntouched(image, image, *original, *frame));
+  EXPECT_EQ(frame->data[0][0], 11);
+}
+
+TEST(Oriented, QuarterTurnsComposeToTheIdentity) {
+  ImageRgb8 image(3, 2);
+  for (std::size_t i = 0; i < image.data.size(); ++i) image.data[i] = static_cast<std::uint8_t>(i);
+  for (const Orientation o :
+       {Orientation{0, -1, 1, 0}, Orientation{0, 1, -1, 0}, Orientation{-1, 0, 0, -1},
+        Orientation{0, 1, 1, 0}, Orientation{-1, 0, 0, 1}}) {
+    EXPECT_EQ(Oriented(Oriented(image, o), o.Inverse()).data, image.data);
+    EXPECT_NE(Oriented(image, o).data, image.data);
+  }
+}
+
+}  // namespace
+}  // namespace lorgnette
