@@ -1,0 +1,140 @@
+// SPDX-License-Identifier: Apache-2.0
+// Speed of rays through a lens, with its accuracy as a counter, beside a calibration kernel.
+#include <benchmark/benchmark.h>
+
+#include <Eigen/Core>
+#include <cmath>
+#include <random>
+#include <vector>
+
+#include "optics/lens_kernel.h"
+#include "optics/trace.h"
+#include "tests/optics/lens_oracle.h"
+
+namespace lorgnette {
+namespace {
+
+constexpr std::size_t kRays = 4096;  // stays in the second-level cache
+constexpr double kIndex = 1.6;
+
+Lens SpherePair() {
+  Lens lens;
+  lens.front = Surface(SphereSurface{1 / 300.0});
+  lens.back = Surface(SphereSurface{1 / 74.9647941931});
+  lens.center_thickness_mm = 1.5;
+  return lens;
+}
+
+Lens ToricBack() {
+  Lens lens = SpherePair();
+  lens.back = Surface(TorusSurface{1 / 54.47, 1 / 74.86, 2.1});
+  return lens;
+}
+
+// Camera rays from 500 mm to points up to 25 mm off the axis.
+template <typename T>
+struct Rays {
+  std::vector<T> in[6], out[6];
+  std::vector<std::uint8_t> status;
+  Rays() : status(kRays) {
+    for (int k = 0; k < 6; ++k) {
+      in[k].resize(kRays);
+      out[k].resize(kRays);
+    }
+    std::mt19937_64 random(1);
+    std::uniform_real_distribution<double> unit(0, 1);
+    for (std::size_t i = 0; i < kRays; ++i) {
+      const double r = 25 * std::sqrt(unit(random)), a = 6.283185307 * unit(random);
+      const Eigen::Vector3d d = Eigen::Vector3d(r * std::cos(a), r * std::sin(a), 500).normalized();
+      const double values[] = {0, 0, -500, d.x(), d.y(), d.z()};
+      for (int k = 0; k < 6; ++k) in[k][i] = T(values[k]);
+    }
+  }
+  RayArrays<const T> Input() const {
+    return {in[0].data(), in[1].data(), in[2].data(), in[3].data(), in[4].data(), in[5].data()};
+  }
+  RayArrays<T> Output() {
+    return {out[0].data(), out[1].data(), out[2].data(),
+            out[3].data(), out[4].data(), out[5].data()};
+  }
+};
+
+// Worst error against long double: mm on the exit surface, and of the direction.
+template <typename T>
+void CountErrors(const Lens& lens, const Rays<T>& rays, benchmark::State& state) {
+  double position = 0, direction = 0;
+  for (std::size_t i = 0; i < kRays; i += 7) {
+    const auto field = [&](const std::vector<T>* v, int k) {
+      return oracle::Vec(v[k][i], v[k + 1][i], v[k + 2][i]);
+    };
+    const auto expected = oracle::TraceLens(lens, field(rays.in, 0), field(rays.in, 3).normalized(),
+                                            static_cast<T>(kIndex));
+    position = std::max(position, double((field(rays.out, 0) - expected.second.point).norm()));
+    direction = std::max(direction, double((field(rays.out, 3) - expected.exit).norm()));
+  }
+  state.counters["err_mm"] = position;
+  state.counters["err_dir"] = direction;
+}
+
+template <typename T>
+void TraceBatch(benchmark::State& state, const Lens& lens) {
+  Rays<T> rays;
+  for (auto _ : state) {
+    TraceLensBatch(lens, kIndex, rays.Input(), kRays, {rays.Output(), rays.status.data()});
+    benchmark::DoNotOptimize(rays.out[0].data());
+    benchmark::ClobberMemory();
+  }
+  state.SetItemsProcessed(state.iterations() * std::int64_t(kRays));
+  state.SetLabel(LensKernelTarget());
+  CountErrors(lens, rays, state);
+}
+
+void TraceScalar(benchmark::State& state, const Lens& lens) {
+  Rays<double> rays;
+  for (auto _ : state) {
+    for (std::size_t i = 0; i < kRays; ++i) {
+      const Ray ray{{rays.in[0][i], rays.in[1][i], rays.in[2][i]},
+                    {rays.in[3][i], rays.in[4][i], rays.in[5][i]}};
+      const LensTrace trace = TraceThrough(lens, ray, kIndex);
+      for (int k = 0; k < 3; ++k) {
+        rays.out[k][i] = trace.exit.origin[k];
+        rays.out[k + 3][i] = trace.exit.direction[k];
+      }
+    }
+    benchmark::ClobberMemory();
+  }
+  state.SetItemsProcessed(state.iterations() * std::int64_t(kRays));
+  CountErrors(lens, rays, state);
+}
+
+// Square roots and divisions as a two-sphere trace needs them, and nothing else: what the machine
+// gives today. Compare times with this one, not with the clock.
+template <typename T>
+void Calibration(benchmark::State& state) {
+  using Array = Eigen::Array<T, Eigen::Dynamic, 1>;
+  Array a = Array::LinSpaced(Eigen::Index(kRays), T(1), T(2)), b = a;
+  for (auto _ : state) {
+    for (int i = 0; i < 2; ++i) b = (a + (a * b).sqrt() + (b + T(1)).sqrt()) / (a + b);
+    benchmark::DoNotOptimize(b.data());
+    benchmark::ClobberMemory();
+  }
+  state.SetItemsProcessed(state.iterations() * std::int64_t(kRays));
+}
+
+BENCHMARK(Calibration<double>)->Name("optics/calibration/double");
+BENCHMARK(Calibration<float>)->Name("optics/calibration/float");
+void SpherePairDouble(benchmark::State& state) { TraceBatch<double>(state, SpherePair()); }
+void SpherePairFloat(benchmark::State& state) { TraceBatch<float>(state, SpherePair()); }
+void SpherePairScalar(benchmark::State& state) { TraceScalar(state, SpherePair()); }
+void TorusDouble(benchmark::State& state) { TraceBatch<double>(state, ToricBack()); }
+void TorusFloat(benchmark::State& state) { TraceBatch<float>(state, ToricBack()); }
+void TorusScalar(benchmark::State& state) { TraceScalar(state, ToricBack()); }
+BENCHMARK(SpherePairDouble)->Name("optics/trace/sphere_pair/double");
+BENCHMARK(SpherePairFloat)->Name("optics/trace/sphere_pair/float");
+BENCHMARK(SpherePairScalar)->Name("optics/trace/sphere_pair/scalar");
+BENCHMARK(TorusDouble)->Name("optics/trace/torus/double");
+BENCHMARK(TorusFloat)->Name("optics/trace/torus/float");
+BENCHMARK(TorusScalar)->Name("optics/trace/torus/scalar");
+
+}  // namespace
+}  // namespace lorgnette

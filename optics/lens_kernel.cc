@@ -1,0 +1,397 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "optics/lens_kernel.h"
+
+#include <cmath>
+#include <type_traits>
+
+#include "optics/lens_kernel_job.h"
+#include "optics/ray.h"
+#include "optics/trace.h"
+
+#undef HWY_TARGET_INCLUDE
+#define HWY_TARGET_INCLUDE "optics/lens_kernel.cc"
+#include <hwy/foreach_target.h>
+// After foreach_target.h, by Highway's rule.
+#include <hwy/highway.h>
+
+#include "optics/lens_kernel_face-inl.h"
+
+HWY_BEFORE_NAMESPACE();
+namespace lorgnette::kernel {
+namespace HWY_NAMESPACE {
+
+// After an interface: direction, whether it refracts at all, and the cosines for Fresnel.
+template <class D>
+struct Refraction {
+  hn::Mask<D> ok;
+  Vec3<D> direction;
+  hn::Vec<D> along;  // cosine after, with the sense's sign; 0 on total reflection
+};
+
+// eta = n_before / n_after; `difference` = (1 - eta)(1 + eta), exact for eta = 1.
+template <class D>
+HWY_INLINE Refraction<D> RefractAt(D d, const FaceHit<D>& hit, const Vec3<D>& dir, hn::Vec<D> eta,
+                                   hn::Vec<D> difference, hn::Vec<D> sense) {
+  const auto eta_cosine = hn::Mul(eta, hit.cosine);
+  const auto after2 = hn::MulAdd(eta_cosine, eta_cosine, difference);
+  Refraction<D> r;
+  r.ok = hn::Ge(after2, hn::Zero(d));
+  r.along = hn::Mul(sense, hn::Sqrt(hn::Max(after2, hn::Zero(d))));
+  const auto k = hn::Sub(r.along, eta_cosine);
+  r.direction = {hn::MulAdd(eta, dir.x, hn::Mul(k, hit.normal.x)),
+                 hn::MulAdd(eta, dir.y, hn::Mul(k, hit.normal.y)),
+                 hn::MulAdd(eta, dir.z, hn::Mul(k, hit.normal.z))};
+  return r;
+}
+
+// Unpolarised reflectance; 1 on total reflection, where the cosine after is 0.
+template <class D>
+HWY_INLINE hn::Vec<D> Reflectance(D d, hn::Vec<D> before, hn::Vec<D> after, hn::Vec<D> eta) {
+  const auto eb = hn::Mul(eta, before), ea = hn::Mul(eta, after);
+  const auto rs = hn::Div(hn::Sub(eb, after), hn::Add(eb, after));
+  const auto rp = hn::Div(hn::Sub(before, ea), hn::Add(before, ea));
+  const auto mean = hn::Mul(hn::Set(d, hn::TFromD<D>(0.5)), hn::MulAdd(rs, rs, hn::Mul(rp, rp)));
+  return hn::IfThenElse(hn::Eq(after, hn::Zero(d)), hn::Set(d, 1), mean);
+}
+
+template <class D, class T>
+HWY_INLINE Vec3<D> LoadPoints(D d, const RayArrays<T>& a, std::size_t i) {
+  return {hn::LoadU(d, a.ox + i), hn::LoadU(d, a.oy + i), hn::LoadU(d, a.oz + i)};
+}
+template <class D, class T>
+HWY_INLINE Vec3<D> LoadDirections(D d, const RayArrays<T>& a, std::size_t i) {
+  return {hn::LoadU(d, a.dx + i), hn::LoadU(d, a.dy + i), hn::LoadU(d, a.dz + i)};
+}
+template <class D, class T>
+HWY_INLINE void StorePoints(D d, hn::Mask<D> ok, const Vec3<D>& v, T offset_z,
+                            const RayArrays<T>& a, std::size_t i) {
+  hn::StoreU(hn::IfThenElseZero(ok, v.x), d, a.ox + i);
+  hn::StoreU(hn::IfThenElseZero(ok, v.y), d, a.oy + i);
+  hn::StoreU(hn::IfThenElseZero(ok, hn::Add(v.z, hn::Set(d, offset_z))), d, a.oz + i);
+}
+template <class D, class T>
+HWY_INLINE void StoreDirections(D d, hn::Mask<D> ok, const Vec3<D>& v, const RayArrays<T>& a,
+                                std::size_t i) {
+  hn::StoreU(hn::IfThenElseZero(ok, v.x), d, a.dx + i);
+  hn::StoreU(hn::IfThenElseZero(ok, v.y), d, a.dy + i);
+  hn::StoreU(hn::IfThenElseZero(ok, v.z), d, a.dz + i);
+}
+
+template <class D>
+HWY_INLINE void StoreStatus(D d, hn::Mask<D> reached, hn::Mask<D> refracted, std::uint8_t* status) {
+  using T = hn::TFromD<D>;
+  constexpr auto kMiss = T(static_cast<int>(RayStatus::kMissesSurface));
+  constexpr auto kTotal = T(static_cast<int>(RayStatus::kTotalInternalReflection));
+  if (HWY_LIKELY(hn::AllTrue(d, hn::And(reached, refracted)))) {
+    for (std::size_t k = 0; k < hn::Lanes(d); ++k) status[k] = 0;
+    return;
+  }
+  HWY_ALIGN T code[HWY_MAX_BYTES / sizeof(T)];
+  hn::Store(
+      hn::IfThenElse(reached, hn::IfThenZeroElse(refracted, hn::Set(d, kTotal)), hn::Set(d, kMiss)),
+      d, code);
+  for (std::size_t k = 0; k < hn::Lanes(d); ++k) status[k] = static_cast<std::uint8_t>(code[k]);
+}
+
+// A direction is taken as unit; one so long that squares could overflow is no ray.
+template <class D>
+HWY_INLINE hn::Mask<D> IsDirection(D d, const Vec3<D>& dir) {
+  return hn::Lt(Dot<D>(dir, dir), hn::Set(d, 2));
+}
+
+// One register of rays through the lens, from `in` at i to `out` at i.
+template <class D, class First, class Second, class T = hn::TFromD<D>>
+HWY_INLINE void TraceOne(D d, const First& first, const Second& second, const LensJob<T>& job,
+                         const RayArrays<const T>& in, const LensBatchOutput<T>& out,
+                         std::size_t i) {
+  const auto sense = hn::Set(d, job.sense);
+  const auto dir = LoadDirections(d, in, i);
+  auto origin = LoadPoints(d, in, i);
+  origin.z = hn::Sub(origin.z, hn::Set(d, job.first.vertex_z));
+  // Start at the point nearest the vertex: small numbers from here on, whatever the distance.
+  const auto p = Along<D>(origin, hn::Neg(Dot<D>(origin, dir)), dir);
+
+  auto hit1 = first.Intersect(p, dir);
+  const auto same_way = hn::Gt(hn::Mul(dir.z, sense), hn::Zero(d));
+  hit1.ok = hn::And(hit1.ok, hn::And(same_way, IsDirection(d, dir)));
+  const auto eta1 = hn::Set(d, 1 / job.index);
+  const auto inside =
+      RefractAt(d, hit1, dir, eta1, hn::Set(d, (1 - 1 / job.index) * (1 + 1 / job.index)), sense);
+  const auto entered = hn::And(hit1.ok, inside.ok);
+
+  auto p2 = hit1.point;
+  p2.z = hn::Add(p2.z, hn::Set(d, job.first.vertex_z - job.second.vertex_z));
+  const auto hit2 = second.Intersect(p2, inside.direction);
+  const auto eta2 = hn::Set(d, job.index);
+  const auto after = RefractAt(d, hit2, inside.direction, eta2,
+                               hn::Set(d, (1 - job.index) * (1 + job.index)), sense);
+  const auto reached = hn::And(entered, hit2.ok);
+  const auto ok = hn::And(reached, after.ok);
+
+  StorePoints(d, ok, hit2.point, job.second.vertex_z, out.exit, i);
+  StoreDirections(d, ok, after.direction, out.exit, i);
+  // Total reflection at the first surface counts as reached: IfThenElse(reached, total, miss).
+  const auto total_first = hn::AndNot(inside.ok, hit1.ok);
+  StoreStatus(d, hn::Or(reached, total_first), ok, out.status + i);
+  if (out.first != nullptr) {
+    StorePoints(d, hit1.ok, hit1.point, job.first.vertex_z, *out.first, i);
+    StoreDirections(d, hit1.ok, hit1.normal, *out.first, i);
+  }
+  if (out.inside != nullptr) {
+    StorePoints(d, reached, hit2.point, job.second.vertex_z, *out.inside, i);
+    StoreDirections(d, reached, inside.direction, *out.inside, i);
+  }
+  if (out.second != nullptr) StoreDirections(d, reached, hit2.normal, *out.second, i);
+  if (out.first_reflectance != nullptr) {
+    hn::StoreU(hn::IfThenElseZero(hit1.ok, Reflectance(d, hit1.cosine, inside.along, eta1)), d,
+               out.first_reflectance + i);
+  }
+  if (out.second_reflectance != nullptr) {
+    hn::StoreU(hn::IfThenElseZero(reached, Reflectance(d, hit2.cosine, after.along, eta2)), d,
+               out.second_reflectance + i);
+  }
+}
+
+// One register of rays inside the glass to one face.
+template <class D, class T = hn::TFromD<D>>
+HWY_INLINE void FaceOne(D d, const GeneralFace<D>& face, const FaceJob<T>& job,
+                        const RayArrays<const T>& in, const FaceBatchOutput<T>& out,
+                        std::size_t i) {
+  const auto dir = LoadDirections(d, in, i);
+  auto p = LoadPoints(d, in, i);
+  p.z = hn::Sub(p.z, hn::Set(d, job.face.vertex_z));
+  auto hit = face.Intersect(p, dir);
+  hit.ok = hn::And(hit.ok, hn::And(hn::Gt(hit.distance, hn::Zero(d)), IsDirection(d, dir)));
+  const auto eta = hn::Set(d, job.index);
+  const auto after = RefractAt(d, hit, dir, eta, hn::Set(d, (1 - job.index) * (1 + job.index)),
+                               hn::Set(d, job.sense));
+  const auto ok = hn::And(hit.ok, after.ok);
+  StorePoints(d, hit.ok, hit.point, job.face.vertex_z, out.hit, i);
+  StoreDirections(d, hit.ok, hit.normal, out.hit, i);
+  StoreStatus(d, hit.ok, ok, out.status + i);
+  if (out.refracted != nullptr) StoreDirections(d, ok, after.direction, *out.refracted, i);
+  if (out.reflected != nullptr) {
+    const auto mirrored = Along<D>(dir, hn::Mul(hn::Set(d, T(-2)), hit.cosine), hit.normal);
+    StoreDirections(d, hit.ok, mirrored, *out.reflected, i);
+  }
+  if (out.reflectance != nullptr) {
+    hn::StoreU(hn::IfThenElseZero(hit.ok, Reflectance(d, hit.cosine, after.along, eta)), d,
+               out.reflectance + i);
+  }
+}
+
+// Room for the ragged tail: a few padded arrays on the stack.
+template <typename T>
+struct TailRays {
+  static constexpr std::size_t kLanes = HWY_MAX_BYTES / sizeof(T);
+  HWY_ALIGN T values[6][kLanes];
+  RayArrays<T> arrays{values[0], values[1], values[2], values[3], values[4], values[5]};
+
+  // Copies m rays and fills the rest with the last of them.
+  RayArrays<const T> Fill(const RayArrays<const T>& in, std::size_t i, std::size_t m) {
+    const T* from[6] = {in.ox, in.oy, in.oz, in.dx, in.dy, in.dz};
+    for (int f = 0; f < 6; ++f) {
+      for (std::size_t k = 0; k < kLanes; ++k) values[f][k] = from[f][i + (k < m ? k : m - 1)];
+    }
+    return {values[0], values[1], values[2], values[3], values[4], values[5]};
+  }
+  void CopyTo(const RayArrays<T>& out, std::size_t i, std::size_t m, bool points = true) const {
+    T* to[6] = {out.ox, out.oy, out.oz, out.dx, out.dy, out.dz};
+    for (int f = points ? 0 : 3; f < 6; ++f) {
+      for (std::size_t k = 0; k < m; ++k) to[f][i + k] = values[f][k];
+    }
+  }
+};
+
+template <typename T>
+void CopyTail(const T* from, T* to, std::size_t m) {
+  for (std::size_t k = 0; k < m; ++k) to[k] = from[k];
+}
+
+template <class First, class Second, class D, class T = hn::TFromD<D>>
+HWY_INLINE void TraceAll(D d, const LensJob<T>& job) {
+  const First first(d, job.first, job.sense);
+  const Second second(d, job.second, job.sense);
+  const std::size_t lanes = hn::Lanes(d);
+  std::size_t i = 0;
+  for (; i + lanes <= job.n; i += lanes) TraceOne(d, first, second, job, job.in, job.out, i);
+  const std::size_t m = job.n - i;
+  if (m == 0) return;
+
+  constexpr std::size_t kLanes = TailRays<T>::kLanes;
+  TailRays<T> in, exit, first_hit, inside, second_hit;
+  std::uint8_t status[kLanes];
+  HWY_ALIGN T reflectance1[kLanes];
+  HWY_ALIGN T reflectance2[kLanes];
+  LensBatchOutput<T> out{exit.arrays, status};
+  if (job.out.first != nullptr) out.first = &first_hit.arrays;
+  if (job.out.inside != nullptr) out.inside = &inside.arrays;
+  if (job.out.second != nullptr) out.second = &second_hit.arrays;
+  if (job.out.first_reflectance != nullptr) out.first_reflectance = reflectance1;
+  if (job.out.second_reflectance != nullptr) out.second_reflectance = reflectance2;
+  TraceOne(d, first, second, job, in.Fill(job.in, i, m), out, 0);
+  exit.CopyTo(job.out.exit, i, m);
+  CopyTail(status, job.out.status + i, m);
+  if (out.first != nullptr) first_hit.CopyTo(*job.out.first, i, m);
+  if (out.inside != nullptr) inside.CopyTo(*job.out.inside, i, m);
+  if (out.second != nullptr) second_hit.CopyTo(*job.out.second, i, m, false);
+  if (out.first_reflectance != nullptr) {
+    CopyTail(reflectance1, job.out.first_reflectance + i, m);
+  }
+  if (out.second_reflectance != nullptr) {
+    CopyTail(reflectance2, job.out.second_reflectance + i, m);
+  }
+}
+
+template <typename T>
+HWY_INLINE void TraceLensOf(const LensJob<T>& job) {
+  const hn::ScalableTag<T> d;
+  using D = hn::ScalableTag<T>;
+  const auto plain = [](const FaceParams<T>& f) { return !f.torus && !f.tilted; };
+  if (plain(job.first) && plain(job.second)) {
+    TraceAll<SphereFace<D>, SphereFace<D>>(d, job);
+  } else {
+    TraceAll<GeneralFace<D>, GeneralFace<D>>(d, job);
+  }
+}
+
+template <typename T>
+HWY_INLINE void TraceFaceOf(const FaceJob<T>& job) {
+  const hn::ScalableTag<T> d;
+  const GeneralFace<hn::ScalableTag<T>> face(d, job.face, job.sense);
+  const std::size_t lanes = hn::Lanes(d);
+  std::size_t i = 0;
+  for (; i + lanes <= job.n; i += lanes) FaceOne(d, face, job, job.in, job.out, i);
+  const std::size_t m = job.n - i;
+  if (m == 0) return;
+
+  constexpr std::size_t kLanes = TailRays<T>::kLanes;
+  TailRays<T> in, hit, refracted, reflected;
+  std::uint8_t status[kLanes];
+  HWY_ALIGN T reflectance[kLanes];
+  FaceBatchOutput<T> out{hit.arrays, status};
+  if (job.out.refracted != nullptr) out.refracted = &refracted.arrays;
+  if (job.out.reflected != nullptr) out.reflected = &reflected.arrays;
+  if (job.out.reflectance != nullptr) out.reflectance = reflectance;
+  FaceOne(d, face, job, in.Fill(job.in, i, m), out, 0);
+  hit.CopyTo(job.out.hit, i, m);
+  CopyTail(status, job.out.status + i, m);
+  if (out.refracted != nullptr) refracted.CopyTo(*job.out.refracted, i, m, false);
+  if (out.reflected != nullptr) reflected.CopyTo(*job.out.reflected, i, m, false);
+  if (out.reflectance != nullptr) CopyTail(reflectance, job.out.reflectance + i, m);
+}
+
+void TraceLensFloat(const LensJob<float>& job) { TraceLensOf(job); }
+void TraceLensDouble(const LensJob<double>& job) { TraceLensOf(job); }
+void TraceFaceFloat(const FaceJob<float>& job) { TraceFaceOf(job); }
+void TraceFaceDouble(const FaceJob<double>& job) { TraceFaceOf(job); }
+const char* TargetName() { return hwy::TargetName(HWY_TARGET); }
+
+}  // namespace HWY_NAMESPACE
+}  // namespace lorgnette::kernel
+HWY_AFTER_NAMESPACE();
+
+#if HWY_ONCE
+namespace lorgnette {
+namespace kernel {
+
+HWY_EXPORT(TraceLensFloat);
+HWY_EXPORT(TraceLensDouble);
+HWY_EXPORT(TraceFaceFloat);
+HWY_EXPORT(TraceFaceDouble);
+HWY_EXPORT(TargetName);
+
+namespace {
+
+// `rotation` turns the surface's own axes into the lens frame's.
+template <typename T>
+FaceParams<T> ParamsOf(const Surface& surface, double vertex_z, const Eigen::Matrix3d& rotation) {
+  FaceParams<T> f;
+  f.vertex_z = static_cast<T>(vertex_z);
+  f.tilted = !rotation.isIdentity(0);
+  const Eigen::Vector3d axis = rotation.col(2);
+  f.ax = static_cast<T>(axis.x());
+  f.ay = static_cast<T>(axis.y());
+  f.az = static_cast<T>(axis.z());
+  if (const auto* sphere = std::get_if<SphereSurface>(&surface.shape())) {
+    f.c = static_cast<T>(sphere->curvature);
+  } else if (const auto* torus = std::get_if<TorusSurface>(&surface.shape())) {
+    f.torus = torus->curvature_generator != torus->curvature_across;
+    f.c = static_cast<T>(torus->curvature_across);
+    f.generator = static_cast<T>(torus->curvature_generator);
+    f.delta = static_cast<T>(torus->curvature_generator - torus->curvature_across);
+    const Eigen::Vector3d g = rotation * Eigen::Vector3d(std::cos(torus->generator_angle),
+                                                         std::sin(torus->generator_angle), 0);
+    f.gx = static_cast<T>(g.x());
+    f.gy = static_cast<T>(g.y());
+    f.gz = static_cast<T>(g.z());
+  }
+  return f;
+}
+
+template <typename T>
+FaceParams<T> ParamsOf(const Lens& lens, LensFace face) {
+  if (face == LensFace::kFront) return ParamsOf<T>(lens.front, 0, Eigen::Matrix3d::Identity());
+  return ParamsOf<T>(lens.back, lens.center_thickness_mm, BackRotation(lens));
+}
+
+template <typename T>
+LensJob<T> MakeLensJob(const Lens& lens, double index, const RayArrays<const T>& in, std::size_t n,
+                       const LensBatchOutput<T>& out) {
+  LensJob<T> job;
+  const bool forward = in.dz[0] > 0;
+  job.first = ParamsOf<T>(lens, forward ? LensFace::kFront : LensFace::kBack);
+  job.second = ParamsOf<T>(lens, forward ? LensFace::kBack : LensFace::kFront);
+  job.sense = forward ? T(1) : T(-1);
+  job.index = static_cast<T>(index);
+  job.in = in;
+  job.n = n;
+  job.out = out;
+  return job;
+}
+
+template <typename T>
+FaceJob<T> MakeFaceJob(const Lens& lens, LensFace face, double index, const RayArrays<const T>& in,
+                       std::size_t n, const FaceBatchOutput<T>& out) {
+  FaceJob<T> job;
+  job.face = ParamsOf<T>(lens, face);
+  job.sense = face == LensFace::kBack ? T(1) : T(-1);
+  job.index = static_cast<T>(index);
+  job.in = in;
+  job.n = n;
+  job.out = out;
+  return job;
+}
+
+}  // namespace
+}  // namespace kernel
+
+void TraceLensBatch(const Lens& lens, double index, const RayArrays<const float>& in, std::size_t n,
+                    const LensBatchOutput<float>& out) {
+  if (n == 0) return;
+  HWY_DYNAMIC_DISPATCH(kernel::TraceLensFloat)(kernel::MakeLensJob(lens, index, in, n, out));
+}
+
+void TraceLensBatch(const Lens& lens, double index, const RayArrays<const double>& in,
+                    std::size_t n, const LensBatchOutput<double>& out) {
+  if (n == 0) return;
+  HWY_DYNAMIC_DISPATCH(kernel::TraceLensDouble)(kernel::MakeLensJob(lens, index, in, n, out));
+}
+
+void TraceFaceBatch(const Lens& lens, LensFace face, double index, const RayArrays<const float>& in,
+                    std::size_t n, const FaceBatchOutput<float>& out) {
+  if (n == 0) return;
+  HWY_DYNAMIC_DISPATCH(kernel::TraceFaceFloat)(kernel::MakeFaceJob(lens, face, index, in, n, out));
+}
+
+void TraceFaceBatch(const Lens& lens, LensFace face, double index,
+                    const RayArrays<const double>& in, std::size_t n,
+                    const FaceBatchOutput<double>& out) {
+  if (n == 0) return;
+  HWY_DYNAMIC_DISPATCH(kernel::TraceFaceDouble)(kernel::MakeFaceJob(lens, face, index, in, n, out));
+}
+
+const char* LensKernelTarget() { return HWY_DYNAMIC_DISPATCH(kernel::TargetName)(); }
+
+}  // namespace lorgnette
+#endif
