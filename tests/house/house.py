@@ -25,7 +25,7 @@ LIBRARIES = {
     "tl/expected": EVERYWHERE,
     "fmt/": EVERYWHERE,
     "hwy/": ["optics"],
-    "nlohmann/": ["base", "geometry", "tracking", "render", "validation", "apps"],
+    "nlohmann/": ["base", "geometry", "tracking", "render", "validation", "apps", "web"],
     "tbb/": ["base", "render", "validation", "apps"],
     "CGAL/": ["geometry"],
     "boost/": ["geometry"],
