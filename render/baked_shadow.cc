@@ -1,0 +1,212 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <tbb/parallel_for.h>
+
+#include <algorithm>
+#include <cmath>
+#include <unordered_set>
+
+#include "base/units.h"
+#include "render/lighting.h"
+#include "render/visibility.h"
+
+namespace lorgnette {
+namespace {
+
+constexpr double kNear_mm = 10;  // contact shadows are sharper than the far lattice up to here
+constexpr int kMaxCells = 24;    // along a triangle's side
+constexpr float kFrameLift_mm = 0.02f;
+// Smooth normals rise above the flat triangles; rays against the face start this far off it.
+constexpr float kFaceLift_mm = 0.3f;
+
+// Cubes of side kNear_mm that hold a vertex of the frame, or neighbour one that does.
+class NearFrame {
+ public:
+  explicit NearFrame(const TriangleMesh& frame) {
+    for (const Eigen::Vector3d& p : frame.positions) {
+      const Eigen::Vector3i c = Cell(p);
+      for (int dz = -1; dz <= 1; ++dz) {
+        for (int dy = -1; dy <= 1; ++dy) {
+          for (int dx = -1; dx <= 1; ++dx) cells_.insert(Key(c + Eigen::Vector3i(dx, dy, dz)));
+        }
+      }
+    }
+  }
+  bool Contains(const Eigen::Vector3d& p) const { return cells_.contains(Key(Cell(p))); }
+
+ private:
+  static Eigen::Vector3i Cell(const Eigen::Vector3d& p) {
+    return (p / kNear_mm).array().floor().cast<int>();
+  }
+  static std::int64_t Key(const Eigen::Vector3i& c) {
+    constexpr std::int64_t kBias = 1 << 20;
+    return ((c.x() + kBias) << 42) | ((c.y() + kBias) << 21) | (c.z() + kBias);
+  }
+  std::unordered_set<std::int64_t> cells_;
+};
+
+struct LatticeCorner {
+  std::uint32_t triangle;
+  float u, v;
+};
+
+}  // namespace
+
+BakedShadow BakedShadow::Bake(const EmbreeScene& scene, const TriangleMesh& face,
+                              const TriangleMesh& frame, const ShadowOptions& options) {
+  BakedShadow baked;
+  const NearFrame near_frame(frame);
+  std::vector<LatticeCorner> points;
+  // Points at the mesh's own vertices are shared by its triangles.
+  constexpr std::uint32_t kUnset = ~0u;
+  std::vector<std::uint32_t> vertex_point(face.positions.size(), kUnset);
+  for (std::size_t t = 0; t < face.triangles.size(); ++t) {
+    const Eigen::Vector3i& triangle = face.triangles[t];
+    const Eigen::Vector3d corners[3] = {face.positions[std::size_t(triangle[0])],
+                                        face.positions[std::size_t(triangle[1])],
+                                        face.positions[std::size_t(triangle[2])]};
+    const double side =
+        std::max({(corners[0] - corners[1]).norm(), (corners[1] - corners[2]).norm(),
+                  (corners[2] - corners[0]).norm()});
+    const bool near = near_frame.Contains((corners[0] + corners[1] + corners[2]) / 3) ||
+                      near_frame.Contains(corners[0]) || near_frame.Contains(corners[1]) ||
+                      near_frame.Contains(corners[2]);
+    const double spacing = near ? options.spacing_near_mm : options.spacing_far_mm;
+    const int cells = std::clamp(int(std::ceil(side / spacing)), 1, kMaxCells);
+    baked.lattices_.push_back({std::uint32_t(baked.corners_.size()), std::uint16_t(cells), false});
+    for (int j = 0; j <= cells; ++j) {
+      for (int i = 0; i + j <= cells; ++i) {
+        const int corner = i == cells ? 1 : j == cells ? 2 : i + j == 0 ? 0 : -1;
+        std::uint32_t* shared = corner < 0 ? nullptr : &vertex_point[std::size_t(triangle[corner])];
+        if (shared != nullptr && *shared != kUnset) {
+          baked.corners_.push_back(*shared);
+          continue;
+        }
+        if (shared != nullptr) *shared = std::uint32_t(points.size());
+        baked.corners_.push_back(std::uint32_t(points.size()));
+        points.push_back({std::uint32_t(t), float(i) / float(cells), float(j) / float(cells)});
+      }
+    }
+  }
+  baked.point_count_ = points.size();
+
+  const std::vector<Eigen::Vector3f> sphere = SphereDirections(options.directions);
+  std::vector<Harmonics> harmonics;
+  for (const Eigen::Vector3f& d : sphere) harmonics.push_back(EvaluateHarmonics(d));
+  const float solid_angle = float(4 * kPi) / float(options.directions);
+
+  struct PointResult {
+    std::vector<Blocked> blocked;
+    Harmonics transfer;
+    float bounce = 0;
+  };
+  std::vector<PointResult> results(points.size());
+  tbb::parallel_for(std::size_t(0), points.size(), [&](std::size_t i) {
+    const LatticeCorner& at = points[i];
+    const Eigen::Vector3i& triangle = face.triangles[at.triangle];
+    const float w[3] = {1 - at.u - at.v, at.u, at.v};
+    Eigen::Vector3f position = Eigen::Vector3f::Zero(), normal = Eigen::Vector3f::Zero();
+    for (int k = 0; k < 3; ++k) {
+      position += w[k] * face.positions[std::size_t(triangle[k])].cast<float>();
+      normal += w[k] * face.normals[std::size_t(triangle[k])].cast<float>();
+    }
+    normal.normalize();
+    PointResult& result = results[i];
+    ForHemispherePackets(sphere, position + kFrameLift_mm * normal, normal,
+                         [&](std::size_t first, RayPacket& packet, const float* cosine) {
+                           scene.Occluded16(RaySet::kFrame, packet);
+                           for (std::size_t k = 0; k < RayPacket::kSize; ++k) {
+                             if (packet.valid[k] && packet.far[k] < 0) {
+                               result.blocked.push_back({std::uint16_t(first + k), cosine[k]});
+                             }
+                           }
+                         });
+    if (result.blocked.empty()) return;
+    result.transfer.fill(0);
+    float open = 0, closed = 0;
+    std::vector<Blocked> seen;
+    std::size_t next = 0;
+    ForHemispherePackets(sphere, position + kFaceLift_mm * normal, normal,
+                         [&](std::size_t first, RayPacket& packet, const float* cosine) {
+                           if (options.sees_face) scene.Occluded16(RaySet::kHead, packet);
+                           for (std::size_t k = 0; k < RayPacket::kSize; ++k) {
+                             if (!packet.valid[k]) continue;
+                             const bool by_frame = next < result.blocked.size() &&
+                                                   result.blocked[next].direction == first + k;
+                             if (by_frame) ++next;
+                             if (packet.far[k] < 0) {
+                               closed += cosine[k];
+                               continue;
+                             }
+                             open += cosine[k];
+                             if (by_frame) seen.push_back({std::uint16_t(first + k), cosine[k]});
+                             const Harmonics& h = harmonics[first + k];
+                             for (std::size_t j = 0; j < kHarmonics; ++j) {
+                               result.transfer[j] += solid_angle * cosine[k] * h[j];
+                             }
+                           }
+                         });
+    result.blocked = std::move(seen);
+    result.bounce = open > 0 ? options.interreflection * closed / open : 0;
+  });
+
+  std::vector<bool> is_touched(points.size(), false);
+  for (std::size_t i = 0; i < points.size(); ++i) {
+    const PointResult& result = results[i];
+    if (result.blocked.empty()) continue;
+    is_touched[i] = true;
+    baked.touched_.push_back({std::uint32_t(i), std::uint32_t(baked.blocked_.size()),
+                              std::uint32_t(result.blocked.size()), result.transfer,
+                              result.bounce});
+    baked.blocked_.insert(baked.blocked_.end(), result.blocked.begin(), result.blocked.end());
+  }
+  for (Lattice& lattice : baked.lattices_) {
+    const std::uint32_t n = (lattice.cells + 1u) * (lattice.cells + 2u) / 2;
+    for (std::uint32_t k = 0; k < n; ++k) {
+      lattice.touched = lattice.touched || is_touched[baked.corners_[lattice.first + k]];
+    }
+  }
+  return baked;
+}
+
+std::vector<Eigen::Vector3f> BakedShadow::Relight(const HeadLight& light) const {
+  std::vector<Eigen::Vector3f> ratios(point_count_, Eigen::Vector3f::Ones());
+  tbb::parallel_for(std::size_t(0), touched_.size(), [&](std::size_t i) {
+    const Touched& point = touched_[i];
+    Eigen::Vector3f lost = Eigen::Vector3f::Zero(), all = Eigen::Vector3f::Zero();
+    for (std::uint32_t k = 0; k < point.blocked_count; ++k) {
+      const Blocked& b = blocked_[point.first_blocked + k];
+      lost += b.cosine * light.cells[b.direction];
+    }
+    for (std::size_t j = 0; j < kHarmonics; ++j) all += point.transfer[j] * light.harmonics[j];
+    for (int c = 0; c < 3; ++c) {
+      // Ringing of the harmonics could leave less light than the list has lost.
+      const float open = std::max(all[c], lost[c]);
+      const float bounce = point.bounce * open;
+      ratios[point.point][c] = open > 0 ? (open - lost[c] + bounce) / (open + bounce) : 1.0f;
+    }
+  });
+  return ratios;
+}
+
+Eigen::Vector3f BakedShadow::Ratio(const std::vector<Eigen::Vector3f>& relit,
+                                   std::uint32_t triangle, float u, float v) const {
+  const Lattice& lattice = lattices_[triangle];
+  if (!lattice.touched) return Eigen::Vector3f::Ones();
+  const int cells = lattice.cells;
+  const float x = std::clamp(u, 0.0f, 1.0f) * float(cells);
+  const float y = std::clamp(v, 0.0f, 1.0f) * float(cells);
+  const int j = std::min(int(y), cells - 1);
+  const int i = std::min(int(x), cells - 1 - j);
+  const float fx = std::clamp(x - float(i), 0.0f, 1.0f), fy = std::clamp(y - float(j), 0.0f, 1.0f);
+  const auto at = [&](int column, int row) -> const Eigen::Vector3f& {
+    const int index = row * (cells + 1) - row * (row - 1) / 2 + column;
+    return relit[corners_[lattice.first + std::size_t(index)]];
+  };
+  if (fx + fy <= 1 || i + j + 2 > cells) {
+    const float rest = std::max(1 - fx - fy, 0.0f);
+    return rest * at(i, j) + fx * at(i + 1, j) + fy * at(i, j + 1);
+  }
+  return (fx + fy - 1) * at(i + 1, j + 1) + (1 - fx) * at(i, j + 1) + (1 - fy) * at(i + 1, j);
+}
+
+}  // namespace lorgnette

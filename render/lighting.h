@@ -1,0 +1,97 @@
+// SPDX-License-Identifier: Apache-2.0
+// The environment as the head sees it in one frame, and light baked once a clip for points that
+// move with the head: irradiance by spherical harmonics, shadow by lists of blocked directions.
+//
+// Since frame and face move together, what blocks what never changes while the face is rigid; only
+// the light turns (a precomputed radiance transfer, Sloan et al. 2002).
+#pragma once
+
+#include <Eigen/Core>
+#include <cstdint>
+#include <vector>
+
+#include "base/mesh.h"
+#include "render/directions.h"
+#include "render/embree_scene.h"
+#include "render/environment.h"
+
+namespace lorgnette {
+
+// Radiance of every baked direction times its solid angle, and the same light in harmonics.
+struct HeadLight {
+  std::vector<Eigen::Vector3f> cells;
+  std::array<Eigen::Vector3f, kHarmonics> harmonics;
+};
+//   directions  SphereDirections(n), in head space;  blurred  ForCells(environment, n)
+HeadLight LightAt(const std::vector<Eigen::Vector3f>& directions, const BlurredEnvironment& blurred,
+                  const Eigen::Matrix3f& world_from_head, float scale);
+
+struct SurfacePoint {
+  Eigen::Vector3f position;  // head space, mm
+  Eigen::Vector3f normal;    // unit
+};
+
+// Irradiance at points of the frame, from what neither frame nor head hides, and the share of the
+// cosine-weighted hemisphere that the head fills.
+class BakedIrradiance {
+ public:
+  static BakedIrradiance Bake(const EmbreeScene& scene, const std::vector<SurfacePoint>& points,
+                              int directions);
+  // W/m^2 in units of the environment: one a point, plus pi * head_radiance from the head's part.
+  std::vector<Eigen::Vector3f> Relight(const HeadLight& light,
+                                       const Eigen::Vector3f& head_radiance) const;
+
+ private:
+  std::vector<Harmonics> transfer_;
+  std::vector<float> head_share_;
+};
+
+struct ShadowOptions {
+  bool sees_face = true;  // S_noGlasses with the face as an occluder
+  // Albedo of the skin for light that skin returns to skin: a direction that meets the face brings
+  // this part of the mean light of the open ones instead of none (0: as the paper).
+  float interreflection = 0;
+  int directions = 1024;                               // multiple of 16
+  double spacing_near_mm = 1.0, spacing_far_mm = 3.0;  // of points, near the frame and elsewhere
+};
+
+// Equation (2) of the paper from baked visibility. Points form a lattice on each triangle, fine
+// near the frame, so that a coarse face mesh does not blur the contact.
+class BakedShadow {
+ public:
+  static BakedShadow Bake(const EmbreeScene& scene, const TriangleMesh& face,
+                          const TriangleMesh& frame, const ShadowOptions& options);
+
+  std::size_t point_count() const { return point_count_; }
+  std::size_t touched_count() const { return touched_.size(); }
+  // False where the frame hides nothing from any point of the triangle: its ratio is exactly 1.
+  bool touched(std::uint32_t triangle) const { return lattices_[triangle].touched; }
+  // S_withGlasses / S_noGlasses by channel, one a point, in [0, 1].
+  std::vector<Eigen::Vector3f> Relight(const HeadLight& light) const;
+  Eigen::Vector3f Ratio(const std::vector<Eigen::Vector3f>& relit, std::uint32_t triangle, float u,
+                        float v) const;
+
+ private:
+  struct Lattice {
+    std::uint32_t first = 0;  // into corners_
+    std::uint16_t cells = 1;  // along each side
+    bool touched = false;
+  };
+  struct Blocked {
+    std::uint16_t direction;
+    float cosine;
+  };
+  struct Touched {
+    std::uint32_t point;
+    std::uint32_t first_blocked, blocked_count;
+    Harmonics transfer;  // light that arrives without glasses
+    float bounce;        // light from the face itself, in units of that
+  };
+  std::size_t point_count_ = 0;
+  std::vector<Lattice> lattices_;       // one a triangle
+  std::vector<std::uint32_t> corners_;  // point indices, (cells + 1)(cells + 2) / 2 a triangle
+  std::vector<Touched> touched_;
+  std::vector<Blocked> blocked_;
+};
+
+}  // namespace lorgnette

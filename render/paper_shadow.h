@@ -1,0 +1,35 @@
+// SPDX-License-Identifier: Apache-2.0
+// Algorithm 1 of the paper as it stands: at every shaded point, rays over the hemisphere; the
+// oracle of the baked shadow.
+#pragma once
+
+#include <Eigen/Core>
+#include <cstdint>
+#include <vector>
+
+#include "render/embree_scene.h"
+#include "render/environment.h"
+#include "render/lighting.h"
+
+namespace lorgnette {
+
+class PaperShadow {
+ public:
+  // rays: a point, stratified (render/directions.h). Jittered sets are made once and shared by
+  // points with the same seed modulo kSets.
+  PaperShadow(int rays, bool sees_face, float interreflection);
+
+  // S_withGlasses / S_noGlasses by channel; exactly 1 where no ray meets the frame.
+  Eigen::Vector3f Ratio(const EmbreeScene& scene, const Environment& environment,
+                        const Eigen::Matrix3f& world_from_head, const SurfacePoint& point,
+                        std::uint32_t seed) const;
+
+  static constexpr std::uint32_t kSets = 64;
+
+ private:
+  bool sees_face_;
+  float interreflection_;
+  std::vector<std::vector<Eigen::Vector3f>> sets_;
+};
+
+}  // namespace lorgnette

@@ -1,0 +1,163 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "render/picture_view.h"
+
+#include <tbb/parallel_for.h>
+
+#include <algorithm>
+#include <cmath>
+
+namespace lorgnette {
+namespace {
+
+constexpr float kVisibilityLift_mm = 0.6f;
+
+}  // namespace
+
+PictureView::PictureView(const ImageRgbF& input, const Camera& camera,
+                         const Eigen::Isometry3d& camera_from_head, const EmbreeScene& scene,
+                         const std::vector<Eigen::Vector3f>& face_vertices,
+                         const std::vector<Eigen::Vector3i>& face_triangles,
+                         double background_depth_mm)
+    : input_(input),
+      camera_(camera),
+      rotation_(camera_from_head.rotation().cast<float>()),
+      translation_(camera_from_head.translation().cast<float>()),
+      eye_(camera_from_head.inverse().translation().cast<float>()),
+      scene_(scene),
+      vertices_(face_vertices),
+      triangles_(face_triangles),
+      background_depth_(float(background_depth_mm)) {}
+
+Eigen::Vector2f PictureView::Project(const Eigen::Vector3f& head_point) const {
+  const Eigen::Vector3f p = rotation_ * head_point + translation_;
+  const float inverse = 1 / p.z();
+  return {float(camera_.fx) * p.x() * inverse + float(camera_.cx),
+          float(camera_.fy) * p.y() * inverse + float(camera_.cy)};
+}
+
+bool PictureView::CameraSees(const Eigen::Vector3f& point) const {
+  const Eigen::Vector3f to_eye = eye_ - point;
+  const float distance = to_eye.norm();
+  return !scene_.Occluded(RaySet::kHead, point, to_eye / distance, kVisibilityLift_mm, distance);
+}
+
+Eigen::Vector3f PictureView::Head(const SceneHit& hit, const Eigen::Vector3f& point,
+                                  long& filled) const {
+  const Eigen::Vector2f p = Project(point);
+  if (hit.object == SceneObject::kFace) {
+    std::call_once(face_once_, [&] { FillFace(); });
+    const Eigen::Vector3i& t = triangles_[hit.triangle];
+    const bool vertices_seen = vertex_seen_[std::size_t(t[0])] && vertex_seen_[std::size_t(t[1])] &&
+                               vertex_seen_[std::size_t(t[2])];
+    if (!InsidePicture(p) || (!vertices_seen && !CameraSees(point))) {
+      ++filled;
+      return (1 - hit.u - hit.v) * vertex_colours_[std::size_t(t[0])] +
+             hit.u * vertex_colours_[std::size_t(t[1])] +
+             hit.v * vertex_colours_[std::size_t(t[2])];
+    }
+  }
+  return SampleBicubic(input_, p.x(), p.y());
+}
+
+bool PictureView::Background(const Eigen::Vector3f& origin, const Eigen::Vector3f& direction,
+                             Eigen::Vector3f& colour, long& filled) const {
+  const Eigen::Vector3f o = rotation_ * origin + translation_;
+  const Eigen::Vector3f d = rotation_ * direction;
+  if (d.z() <= 1e-6f) return false;
+  const float t = (background_depth_ - o.z()) / d.z();
+  if (t <= 0) return false;
+  const Eigen::Vector3f at = o + t * d;
+  const Eigen::Vector2f p(float(camera_.fx) * at.x() / at.z() + float(camera_.cx),
+                          float(camera_.fy) * at.y() / at.z() + float(camera_.cy));
+  const Eigen::Vector3f point = rotation_.transpose() * (at - translation_);
+  const Eigen::Vector3f sight = point - eye_;
+  const float distance = sight.norm();
+  if (InsidePicture(p) && !scene_.Occluded(RaySet::kHead, eye_, sight / distance, 0, distance)) {
+    colour = SampleBicubic(input_, p.x(), p.y());
+    return true;
+  }
+  std::call_once(background_once_, [&] { FillBackground(); });
+  ++filled;
+  colour = background_.front().Sample(p.x(), p.y());
+  return true;
+}
+
+const Eigen::Vector3f& PictureView::face_mean() const {
+  std::call_once(face_once_, [&] { FillFace(); });
+  return face_mean_;
+}
+
+void PictureView::FillFace() const {
+  const std::size_t n = vertices_.size();
+  vertex_colours_.assign(n, Eigen::Vector3f::Zero());
+  vertex_seen_.assign(n, 0);
+  tbb::parallel_for(std::size_t(0), n, [&](std::size_t i) {
+    const Eigen::Vector2f p = Project(vertices_[i]);
+    if (!InsidePicture(p) || !CameraSees(vertices_[i])) return;
+    vertex_seen_[i] = 1;
+    vertex_colours_[i] = SampleBilinear(input_, p.x(), p.y());
+  });
+  Eigen::Vector3d sum = Eigen::Vector3d::Zero();
+  double count = 0;
+  for (std::size_t i = 0; i < n; ++i) {
+    if (!vertex_seen_[i]) continue;
+    sum += vertex_colours_[i].cast<double>();
+    ++count;
+  }
+  face_mean_ = count > 0 ? (sum / count).cast<float>() : Eigen::Vector3f::Constant(0.25f);
+
+  // Colour spreads over the mesh from what was seen, one ring of vertices a round.
+  std::vector<float> weight(n, 0.0f);
+  for (std::size_t i = 0; i < n; ++i) weight[i] = vertex_seen_[i];
+  constexpr int kRounds = 48;
+  for (int round = 0; round < kRounds; ++round) {
+    std::vector<Eigen::Vector3f> next(n, Eigen::Vector3f::Zero());
+    std::vector<float> next_weight(n, 0.0f);
+    bool any = false;
+    for (const Eigen::Vector3i& t : triangles_) {
+      for (int a = 0; a < 3; ++a) {
+        const std::size_t to = std::size_t(t[a]);
+        if (weight[to] > 0) continue;
+        for (int b = 1; b < 3; ++b) {
+          const std::size_t from = std::size_t(t[(a + b) % 3]);
+          if (weight[from] <= 0) continue;
+          next[to] += vertex_colours_[from];
+          next_weight[to] += 1;
+          any = true;
+        }
+      }
+    }
+    if (!any) break;
+    for (std::size_t i = 0; i < n; ++i) {
+      if (next_weight[i] <= 0) continue;
+      vertex_colours_[i] = next[i] / next_weight[i];
+      weight[i] = 1;
+    }
+  }
+  for (std::size_t i = 0; i < n; ++i) {
+    if (weight[i] <= 0) vertex_colours_[i] = face_mean_;
+  }
+}
+
+void PictureView::FillBackground() const {
+  const int width = FilledPicture::ReducedSide(camera_.width);
+  const int height = FilledPicture::ReducedSide(camera_.height);
+  std::vector<std::uint8_t> known(std::size_t(width) * std::size_t(height));
+  tbb::parallel_for(0, height, [&](int row) {
+    for (int column = 0; column < width; ++column) {
+      // A reduced pixel is background when its corners and centre are.
+      bool hit = false;
+      for (const auto& [dx, dy] :
+           {std::pair{0.5, 0.5}, {0.0, 0.0}, {1.0, 0.0}, {0.0, 1.0}, {1.0, 1.0}}) {
+        const Eigen::Vector3d d = camera_.Direction((column + dx) * FilledPicture::kStep,
+                                                    (row + dy) * FilledPicture::kStep);
+        const Eigen::Vector3f head = rotation_.transpose() * d.cast<float>();
+        hit = hit || scene_.Occluded(RaySet::kHead, eye_, head, 0, background_depth_);
+      }
+      known[std::size_t(row) * std::size_t(width) + std::size_t(column)] = !hit;
+    }
+  });
+  background_.emplace_back(input_, known);
+}
+
+}  // namespace lorgnette

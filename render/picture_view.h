@@ -1,0 +1,81 @@
+// SPDX-License-Identifier: Apache-2.0
+// The input image as the colour of what rays meet: face and background read where the camera saw
+// them, and plausible colours where it did not.
+#pragma once
+
+#include <Eigen/Geometry>
+#include <mutex>
+#include <vector>
+
+#include "base/camera.h"
+#include "base/image.h"
+#include "base/mesh.h"
+#include "render/embree_scene.h"
+
+namespace lorgnette {
+
+// Bicubic (Catmull-Rom) value at a pixel position (centres at .5), for pixels that are box means:
+// the samples are sharpened by -1/24 of their second difference, which turns means into point
+// values to fourth order. Clamped at the border and at 0.
+Eigen::Vector3f SampleBicubic(const ImageRgbF& image, float x, float y);
+Eigen::Vector3f SampleBilinear(const ImageRgbF& image, float x, float y);
+
+// The input reduced by kFillStep, with holes (and all around) filled from their borders.
+class FilledPicture {
+ public:
+  // known: one byte a reduced pixel, 1 where the picture shows what is wanted.
+  FilledPicture(const ImageRgbF& input, const std::vector<std::uint8_t>& known);
+  Eigen::Vector3f Sample(float x, float y) const;  // in pixels of the input
+  static constexpr int kStep = 4;
+  static int ReducedSide(int side) { return (side + kStep - 1) / kStep; }
+
+ private:
+  ImageRgbF filled_;
+};
+
+// Colours of one frame. Thread safe; what is rarely needed is made at first use.
+class PictureView {
+ public:
+  // background_depth_mm: of the plane behind the head, camera z.
+  PictureView(const ImageRgbF& input, const Camera& camera,
+              const Eigen::Isometry3d& camera_from_head, const EmbreeScene& scene,
+              const std::vector<Eigen::Vector3f>& face_vertices,
+              const std::vector<Eigen::Vector3i>& face_triangles, double background_depth_mm);
+
+  const Eigen::Vector3f& eye() const { return eye_; }
+  Eigen::Vector2f Project(const Eigen::Vector3f& head_point) const;
+
+  // Colour of the head where a refracted ray met it. `filled` counts what the camera never saw.
+  Eigen::Vector3f Head(const SceneHit& hit, const Eigen::Vector3f& point, long& filled) const;
+  // Colour of the background along a ray in head space; false when it does not meet the plane.
+  bool Background(const Eigen::Vector3f& origin, const Eigen::Vector3f& direction,
+                  Eigen::Vector3f& colour, long& filled) const;
+  // Mean colour of the face's visible vertices.
+  const Eigen::Vector3f& face_mean() const;
+
+ private:
+  bool InsidePicture(const Eigen::Vector2f& p) const {
+    return p.x() >= 0 && p.y() >= 0 && p.x() <= float(input_.width) &&
+           p.y() <= float(input_.height);
+  }
+  bool CameraSees(const Eigen::Vector3f& point) const;
+  void FillFace() const;
+  void FillBackground() const;
+
+  const ImageRgbF& input_;
+  Camera camera_;
+  Eigen::Matrix3f rotation_;
+  Eigen::Vector3f translation_, eye_;
+  const EmbreeScene& scene_;
+  const std::vector<Eigen::Vector3f>& vertices_;
+  const std::vector<Eigen::Vector3i>& triangles_;
+  float background_depth_;
+
+  mutable std::once_flag face_once_, background_once_;
+  mutable std::vector<Eigen::Vector3f> vertex_colours_;
+  mutable std::vector<std::uint8_t> vertex_seen_;
+  mutable Eigen::Vector3f face_mean_{0, 0, 0};
+  mutable std::vector<FilledPicture> background_;  // one, once made
+};
+
+}  // namespace lorgnette

@@ -1,0 +1,46 @@
+// SPDX-License-Identifier: Apache-2.0
+// Packets of 16 rays from one point over the half space above its surface.
+#pragma once
+
+#include <Eigen/Core>
+#include <limits>
+#include <vector>
+
+#include "render/embree_scene.h"
+
+namespace lorgnette {
+
+// Calls visit(first, packet, cosine) for every group of 16 neighbours in `directions` (count a
+// multiple of 16) of which any lies above the surface; packet.valid marks those that do, cosine
+// holds their dot product with `normal`. Packets come ready to trace from `origin`.
+template <typename Visit>
+void ForHemispherePackets(const std::vector<Eigen::Vector3f>& directions,
+                          const Eigen::Vector3f& origin, const Eigen::Vector3f& normal,
+                          Visit&& visit) {
+  RayPacket packet;
+  float cosine[RayPacket::kSize];
+  for (std::size_t first = 0; first < directions.size(); first += RayPacket::kSize) {
+    bool any = false;
+    for (std::size_t k = 0; k < RayPacket::kSize; ++k) {
+      const Eigen::Vector3f& d = directions[first + k];
+      cosine[k] = d.dot(normal);
+      packet.valid[k] = cosine[k] > 0;
+      any |= cosine[k] > 0;
+    }
+    if (!any) continue;
+    for (std::size_t k = 0; k < RayPacket::kSize; ++k) {
+      const Eigen::Vector3f& d = directions[first + k];
+      packet.ox[k] = origin.x();
+      packet.oy[k] = origin.y();
+      packet.oz[k] = origin.z();
+      packet.near[k] = 0;
+      packet.dx[k] = d.x();
+      packet.dy[k] = d.y();
+      packet.dz[k] = d.z();
+      packet.far[k] = std::numeric_limits<float>::infinity();
+    }
+    visit(first, packet, cosine);
+  }
+}
+
+}  // namespace lorgnette
