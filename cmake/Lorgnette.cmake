@@ -38,7 +38,11 @@ function(lorgnette_module name)
                                                 GTest::gmock GTest::gtest_main)
     target_compile_definitions(${name}_tests PRIVATE
                                LORGNETTE_SOURCE_DIR="${PROJECT_SOURCE_DIR}")
-    gtest_discover_tests(${name}_tests TEST_PREFIX "${name}." DISCOVERY_MODE PRE_TEST)
+    if(LORGNETTE_TEST_PROGRAMS)
+      add_test(NAME ${name} COMMAND ${name}_tests --gtest_brief=1)
+    else()
+      gtest_discover_tests(${name}_tests TEST_PREFIX "${name}." DISCOVERY_MODE PRE_TEST)
+    endif()
   endif()
 
   file(GLOB bench_sources CONFIGURE_DEPENDS "${PROJECT_SOURCE_DIR}/bench/${name}/*.cc")

@@ -48,3 +48,21 @@ stamp() { echo "$2" >"$stamps/$1"; }
 
 # One hash of the contents of all the files named.
 hash_of() { cat -- "$@" | sha256sum | cut -d' ' -f1; }
+
+# aloud WHAT COMMAND...: as step, with the command's output on the terminal.
+aloud() {
+  local what=$1 started=$SECONDS
+  shift
+  echo "$what:"
+  "$@" </dev/null || die "could not $what"
+  echo "$what: done ($((SECONDS - started)) s)"
+}
+
+# build PRESET [TARGET...]: configures when needed and builds.
+build() {
+  local preset=$1
+  shift
+  step "configure-$preset" "configure the $preset build" cmake --preset "$preset"
+  step "build-$preset" "build $preset${*:+: $*}" \
+    nice cmake --build --preset "$preset" ${*:+--target "$@"}
+}
