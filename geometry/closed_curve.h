@@ -11,7 +11,8 @@ namespace lorgnette {
 
 using Polygon2 = std::vector<Eigen::Vector2d>;  // closed, no repeated point, mm
 
-// Uniform periodic cubic B-spline: twice continuously differentiable. Parameter s in [0, 1), period 1.
+// Uniform periodic cubic B-spline: twice continuously differentiable. Parameter s in [0, 1),
+// period 1.
 class ClosedSpline {
  public:
   // At least 4 control points.

@@ -48,8 +48,7 @@ Result<std::vector<ShippedFrame>> ListShippedFrames() {
   for (const fs::directory_entry& entry : entries) {
     if (entry.path().extension() != ".json") continue;
     LG_ASSIGN(const FrameParameters parameters, ReadParameters(entry.path().string()));
-    frames.push_back(
-        {entry.path().stem().string(), parameters.description, entry.path().string()});
+    frames.push_back({entry.path().stem().string(), parameters.description, entry.path().string()});
   }
   std::sort(frames.begin(), frames.end(),
             [](const ShippedFrame& a, const ShippedFrame& b) { return a.name < b.name; });

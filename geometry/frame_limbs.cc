@@ -40,7 +40,8 @@ class TempleLine {
   // Downward angle at arc length l: the tilt, then the bend around the ear.
   double Pitch(double l) const {
     constexpr double kBendLength_mm = 30;
-    const double bend = Smoothstep((l - temple_.to_bend_mm + 0.3 * kBendLength_mm) / kBendLength_mm);
+    const double bend =
+        Smoothstep((l - temple_.to_bend_mm + 0.3 * kBendLength_mm) / kBendLength_mm);
     return tilt_ + RadiansFromDegrees(temple_.bend_deg) * bend;
   }
   // (back, down) at arc length l.
@@ -88,15 +89,23 @@ Pad PadMesh(const RimShape& rim, const RimParameters& rim_parameters, const PadP
   const double splay = RadiansFromDegrees(pad.splay_deg);
   const Eigen::Vector3d up(-std::sin(frontal), std::cos(frontal), 0);
   const Eigen::Vector3d back(std::sin(splay), 0, -std::cos(splay));
-  const Eigen::Vector3d face = back.cross(up).normalized();  // x < 0
+  const Eigen::Vector3d face = up.cross(back).normalized();  // x < 0
   const Eigen::Vector3d along = up.normalized();
   const Eigen::Vector3d across = along.cross(face);
   const Eigen::Vector3d face_centre(pad.half_gap_mm, pad.y_mm, pad.z_mm);
   const Eigen::Vector3d centre = face_centre - face * (pad.thickness_mm / 2);
 
+  // On an arm: a cushion. Without: a fin that runs out of the rim's nasal side into the face.
+  const double s_top = rim.ParameterAtAngle(158), s_bottom = rim.ParameterAtAngle(203);
   const VolumeMap map = [&](double v, double q, double w) -> Eigen::Vector3d {
     const double l = (v - 0.5) * pad.height_mm;
-    return centre + l * along + q * pad.width_mm / 2 * across + w * pad.thickness_mm / 2 * face;
+    const Eigen::Vector3d cushion =
+        centre + l * along + q * pad.width_mm / 2 * across + w * pad.thickness_mm / 2 * face;
+    if (pad.arm_mm > 0) return cushion;
+    const double s = Mix(s_bottom, s_top, v);
+    const Eigen::Vector3d root =
+        rim.Point(s, 0.5 * rim.Width(s), q * 0.3 * rim_parameters.depth_mm);
+    return root + Smoothstep(0.85 + w) * (cushion - root);
   };
   BarShape shape;
   shape.section = Superellipse(28, 2.4);
@@ -186,8 +195,8 @@ Temple TempleMesh(const TempleParameters& temple, const Eigen::Vector3d& hinge,
     return Eigen::Vector3d(lateral(l), hinge.y() - p.y(), hinge.z() - p.x());
   };
   const auto height = [&](double l) {
-    const double first = Mix(temple.height_mm, temple.middle_height_mm,
-                             Smoothstep(l / (0.65 * temple.to_bend_mm)));
+    const double first =
+        Mix(temple.height_mm, temple.middle_height_mm, Smoothstep(l / (0.65 * temple.to_bend_mm)));
     if (temple.tip_sleeve_mm > 0) return first;
     return Mix(first, temple.tip_height_mm,
                Smoothstep((l - 0.75 * temple.to_bend_mm) / (temple.length_mm - temple.to_bend_mm)));

@@ -28,7 +28,7 @@ EndPiece EndPieceMesh(const RimShape& rim, const RimParameters& rim_parameters,
                       const EndPieceParameters& end, double temple_thickness_mm);
 
 struct Temple {
-  TriangleMesh bar, sleeve;  // sleeve may be empty
+  TriangleMesh bar, sleeve;   // sleeve may be empty
   Eigen::Vector3d ear_point;  // under the bend
 };
 Temple TempleMesh(const TempleParameters& temple, const Eigen::Vector3d& hinge,

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // An eyeglass frame described by numbers (docs/frames.md explains each with a picture).
 //
-// Shapes are given for the wearer's left half, seen from the front: x grows toward the temple, y up;
-// the right half is its mirror image. Lengths in mm, angles in degrees.
+// Shapes are given for the wearer's left half, seen from the front: x grows toward the temple, y
+// up; the right half is its mirror image. Lengths in mm, angles in degrees.
 #pragma once
 
 #include <map>
@@ -44,28 +44,28 @@ struct BridgeParameters {
 // Nose pads: on arms (metal), or of one piece with the rim (acetate) when arm_mm is 0.
 struct PadParameters {
   double height_mm = 13, width_mm = 7.5, thickness_mm = 2.2;
-  double half_gap_mm = 8.5;              // from the middle plane to the pad's contact face
-  double y_mm = -5, z_mm = -5;           // centre of the pad, frame coordinates
+  double half_gap_mm = 8.5;                 // from the middle plane to the pad's contact face
+  double y_mm = -5, z_mm = -5;              // centre of the pad, frame coordinates
   double frontal_deg = 22, splay_deg = 28;  // lean of the face from the vertical; turn to the back
-  double arm_mm = 0.5;                   // radius of the arm's wire; 0: no arm
+  double arm_mm = 0.5;                      // radius of the arm's wire; 0: no arm
   std::string material, arm_material;
 };
 
 struct EndPieceParameters {
-  double angle_deg = 30;                  // where on the outline it leaves
+  double angle_deg = 30;  // where on the outline it leaves
   double height_mm = 8, thickness_mm = 4;
-  double reach_mm = 4;                    // sideways beyond the rim
-  double back_mm = 5;                     // from the front plane back to the hinge
+  double reach_mm = 4;  // sideways beyond the rim
+  double back_mm = 5;   // from the front plane back to the hinge
   std::string material;
 };
 
 struct TempleParameters {
-  double length_mm = 145, to_bend_mm = 97;  // along the middle line
+  double length_mm = 145, to_bend_mm = 97;   // along the middle line
   double height_mm = 7, thickness_mm = 3.2;  // at the hinge
   double middle_height_mm = 5, tip_height_mm = 7;
   double bend_deg = 42, tip_inward_deg = 8;
-  double spread_mm = 142;                // distance between the inner faces at the bend
-  double tip_sleeve_mm = 0;              // length of a thicker sleeve at the end (metal temples)
+  double spread_mm = 142;    // distance between the inner faces at the bend
+  double tip_sleeve_mm = 0;  // length of a thicker sleeve at the end (metal temples)
   double tip_thickness_mm = 3.2;
   std::string material, tip_material;
 };

@@ -45,13 +45,12 @@ FrameModel BuildFrame(const FrameParameters& parameters, const FrameTessellation
   const Pad pad = PadMesh(rim, parameters.rim, parameters.pads);
   parts.AddPair("pad", FramePartKind::kNosePad, pad.pad, parameters.pads.material);
   parts.AddPair("pad arm", FramePartKind::kOther, pad.arm, parameters.pads.arm_material);
-  const EndPiece end = EndPieceMesh(rim, parameters.rim, parameters.end_piece,
-                                    parameters.temples.thickness_mm);
+  const EndPiece end =
+      EndPieceMesh(rim, parameters.rim, parameters.end_piece, parameters.temples.thickness_mm);
   parts.AddPair("end piece", FramePartKind::kFront, end.mesh, parameters.end_piece.material);
   parts.AddPair("hinge", FramePartKind::kHinge, end.barrel,
                 parameters.materials.count("hinge") != 0 ? "hinge" : parameters.end_piece.material);
-  const Temple temple =
-      TempleMesh(parameters.temples, end.hinge, parameters.pantoscopic_tilt_deg);
+  const Temple temple = TempleMesh(parameters.temples, end.hinge, parameters.pantoscopic_tilt_deg);
   parts.AddPair("temple", FramePartKind::kTemple, temple.bar, parameters.temples.material);
   parts.AddPair("temple tip", FramePartKind::kTemple, temple.sleeve,
                 parameters.temples.tip_material);

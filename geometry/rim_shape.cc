@@ -40,8 +40,8 @@ double RimShape::Width(double s) const {
                  y * (n.y() > 0 ? rim_.top_mm : rim_.bottom_mm);
   for (const RimFlare& flare : rim_.flares) {
     const double angle = RadiansFromDegrees(flare.angle_deg);
-    const double away = std::acos(
-        std::clamp(n.x() * std::cos(angle) + n.y() * std::sin(angle), -1.0, 1.0));
+    const double away =
+        std::acos(std::clamp(n.x() * std::cos(angle) + n.y() * std::sin(angle), -1.0, 1.0));
     const double spread = RadiansFromDegrees(flare.spread_deg);
     width += flare.width_mm * std::exp(-0.5 * away * away / (spread * spread));
   }
@@ -145,8 +145,7 @@ TriangleMesh MirroredX(const TriangleMesh& mesh) {
 LensOpening MirroredX(const LensOpening& opening) {
   LensOpening mirrored;
   const Eigen::DiagonalMatrix<double, 3> flip(-1, 1, 1);
-  mirrored.frame_from_opening.linear() =
-      flip * opening.frame_from_opening.linear() * flip;
+  mirrored.frame_from_opening.linear() = flip * opening.frame_from_opening.linear() * flip;
   mirrored.frame_from_opening.translation() = flip * opening.frame_from_opening.translation();
   const auto reflect = [](const Polygon2& polygon) {
     Polygon2 result(polygon.rbegin(), polygon.rend());

@@ -53,8 +53,8 @@ void OrientOutward(TriangleMesh& mesh) {
   double agreement = 0;
   for (const Eigen::Vector3i& t : mesh.triangles) {
     const Eigen::Vector3d& a = mesh.positions[std::size_t(t[0])];
-    const Eigen::Vector3d n = (mesh.positions[std::size_t(t[1])] - a)
-                                  .cross(mesh.positions[std::size_t(t[2])] - a);
+    const Eigen::Vector3d n =
+        (mesh.positions[std::size_t(t[1])] - a).cross(mesh.positions[std::size_t(t[2])] - a);
     for (int k = 0; k < 3; ++k) agreement += n.dot(mesh.normals[std::size_t(t[k])]);
   }
   if (agreement < 0) {

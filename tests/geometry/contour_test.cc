@@ -1,0 +1,83 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "geometry/contour.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "geometry/closed_curve.h"
+#include "geometry/frame_io.h"
+
+namespace lorgnette {
+namespace {
+
+double GreatestDistance(const Polygon2& from, const Polygon2& to) {
+  double worst = 0;
+  for (const Eigen::Vector2d& p : from) worst = std::max(worst, DistanceToBoundary(to, p));
+  return worst;
+}
+
+class ShippedFrames : public testing::TestWithParam<const char*> {
+ protected:
+  static FrameModel Load() {
+    Result<FrameModel> frame = LoadFrame(GetParam());
+    EXPECT_TRUE(frame.has_value()) << frame.error().message;
+    return *frame;
+  }
+};
+
+TEST_P(ShippedFrames, TracedContoursAreTheTrueOnesWithinTheirBound) {
+  const FrameModel frame = Load();
+  const auto traced = TraceOpenings(PartsOfKind(frame, FramePartKind::kFront));
+  ASSERT_TRUE(traced.has_value()) << traced.error().message;
+  for (const auto& [truth, measured] :
+       {std::pair(&frame.right, &traced->right), std::pair(&frame.left, &traced->left)}) {
+    const double contour = GreatestDistance(measured->contour_mm, truth->contour_mm);
+    const double aperture = GreatestDistance(measured->aperture_mm, truth->aperture_mm);
+    EXPECT_LT(contour, kContourError_mm);
+    EXPECT_LT(aperture, kContourError_mm);
+    RecordProperty("contour_um", int(1000 * contour));
+    RecordProperty("aperture_um", int(1000 * aperture));
+    EXPECT_GT(SignedArea(measured->contour_mm), 0);
+    const double off =
+        (measured->frame_from_opening.translation() - truth->frame_from_opening.translation())
+            .norm();
+    EXPECT_LT(off, 2 * kContourError_mm);
+  }
+  EXPECT_NEAR(traced->boxing.a_mm, frame.boxing.a_mm, 2 * kContourError_mm);
+  EXPECT_NEAR(traced->boxing.b_mm, frame.boxing.b_mm, 2 * kContourError_mm);
+  EXPECT_NEAR(traced->boxing.dbl_mm, frame.boxing.dbl_mm, 4 * kContourError_mm);
+  EXPECT_NEAR(traced->boxing.circumference_mm, frame.boxing.circumference_mm, 0.06);
+}
+
+INSTANTIATE_TEST_SUITE_P(All, ShippedFrames,
+                         testing::Values("rectangle", "panto", "cat-eye", "round", "aviator",
+                                         "hexagon"),
+                         [](const auto& shown) {
+                           std::string name = shown.param;
+                           std::erase(name, '-');
+                           return name;
+                         });
+
+TEST(TraceOpenings, RefusesARimWithAGap) {
+  FrameModel frame = *LoadFrame("round");
+  TriangleMesh front;
+  for (const FramePart& part : frame.parts) {
+    if (part.name == "left rim") {
+      TriangleMesh open = part.mesh;
+      std::erase_if(open.triangles, [&](const Eigen::Vector3i& t) {
+        return open.positions[std::size_t(t[0])].y() < -20;
+      });
+      Append(front, open);
+    } else if (part.kind == FramePartKind::kFront) {
+      Append(front, part.mesh);
+    }
+  }
+  const auto traced = TraceOpenings(front);
+  ASSERT_FALSE(traced.has_value());
+  EXPECT_THAT(traced.error().message, testing::HasSubstr("no closed rim"));
+}
+
+TEST(TraceOpenings, RefusesAnEmptyMesh) { EXPECT_FALSE(TraceOpenings({}).has_value()); }
+
+}  // namespace
+}  // namespace lorgnette
