@@ -1,0 +1,94 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "tracking/face_follower.h"
+
+#include <algorithm>
+#include <cmath>
+#include <opencv2/imgproc.hpp>
+#include <utility>
+
+#include "tracking/opencv_view.h"
+
+namespace lorgnette {
+namespace {
+
+constexpr double kMinFaceProbability = 0.5;
+constexpr int kLooksAfterDetection = 2;  // to settle the region before the first landmarks
+constexpr int kThumbnailWidth = 48, kThumbnailHeight = 36;
+// A cut changes the thumbnail by more than this (grey levels), and far more than usual.
+constexpr double kCutLevel = 18, kCutOverUsual = 5;
+constexpr int kCropPixels = 256;
+constexpr double kCropSide = 1.2 / 1.5;  // of the landmark region's side: the face and little more
+
+constexpr double kSmallestSide = 12;  // px; nothing can be told from less
+
+bool Usable(const FaceRegion& region) {
+  return region.centre.allFinite() && std::isfinite(region.angle) && region.side > kSmallestSide &&
+         region.side < 1e5;
+}
+
+Image<std::uint8_t, 1> GreyOf(const ImageRgb8& rgb) {
+  Image<std::uint8_t, 1> grey(rgb.width, rgb.height);
+  cv::Mat target = MatOf(grey);
+  cv::cvtColor(MatOf(rgb), target, cv::COLOR_RGB2GRAY);
+  return grey;
+}
+
+}  // namespace
+
+FaceFollower::FaceFollower(FaceDetector detector, FaceLandmarker landmarker)
+    : detector_(std::move(detector)), landmarker_(std::move(landmarker)) {}
+
+Result<FaceFollower> FaceFollower::Load(const std::string& model_dir,
+                                        const CanonicalMesh& canonical) {
+  LG_ASSIGN(FaceDetector detector, FaceDetector::Load(model_dir + "/face_detection.onnx"));
+  LG_ASSIGN(FaceLandmarker landmarker,
+            FaceLandmarker::Load(model_dir + "/face_landmark.onnx", canonical.mirror));
+  return FaceFollower(std::move(detector), std::move(landmarker));
+}
+
+bool FaceFollower::IsCut(const ImageRgb8& frame) {
+  ImageRgb8 small(kThumbnailWidth, kThumbnailHeight);
+  cv::Mat target = MatOf(small);
+  cv::resize(MatOf(frame), target, target.size(), 0, 0, cv::INTER_AREA);
+  Image<std::uint8_t, 1> thumbnail = GreyOf(small);
+  const bool first = thumbnail_.empty();
+  std::swap(thumbnail, thumbnail_);
+  if (first) return false;
+  const double pixels = double(thumbnail_.data.size());
+  const double change = cv::norm(MatOf(thumbnail_), MatOf(thumbnail), cv::NORM_L1) / pixels;
+  const bool cut = change > kCutLevel && change > kCutOverUsual * usual_change_;
+  if (!cut) usual_change_ = 0.8 * usual_change_ + 0.2 * change;
+  return cut;
+}
+
+FollowedFrame FaceFollower::Next(const ImageRgb8& frame, double time_s) {
+  FollowedFrame out;
+  out.time_s = time_s;
+  out.cut_before = IsCut(frame);
+  if (out.cut_before) region_.reset();
+  // A region from the frame before may have lost its face: then the whole frame is searched.
+  for (const bool followed : {true, false}) {
+    if (followed && !region_) continue;
+    if (!followed) {
+      const std::optional<FaceDetection> face = detector_.Find(frame);
+      if (!face) break;
+      region_ = face->Region();
+      for (int look = 0; look < kLooksAfterDetection && Usable(*region_); ++look) {
+        region_ = landmarker_.Find(frame, *region_).Region();
+      }
+    }
+    if (!Usable(*region_)) continue;
+    FaceLandmarks found = landmarker_.FindSymmetric(frame, *region_);
+    if (found.face_probability < kMinFaceProbability || !Usable(found.Region())) continue;
+    region_ = found.Region();
+    out.crop.region = *region_;
+    out.crop.region.side *= kCropSide;
+    out.crop.grey = GreyOf(SampleRegion(frame, out.crop.region, kCropPixels));
+    out.landmarks = std::move(found);
+    return out;
+  }
+  region_.reset();
+  return out;
+}
+
+}  // namespace lorgnette

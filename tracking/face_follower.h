@@ -1,0 +1,47 @@
+// SPDX-License-Identifier: Apache-2.0
+// Landmarks frame after frame: one detection, then regions driven by the landmarks of the frame
+// before; a cut in the film or a lost face leads to a new detection in the same frame.
+#pragma once
+
+#include <optional>
+#include <string>
+
+#include "base/image.h"
+#include "base/result.h"
+#include "tracking/canonical_mesh.h"
+#include "tracking/face_detector.h"
+#include "tracking/face_landmarker.h"
+
+namespace lorgnette {
+
+// A square grey picture of the face in one frame, turned upright.
+struct FaceCrop {
+  FaceRegion region;
+  Image<std::uint8_t, 1> grey;
+};
+
+struct FollowedFrame {
+  double time_s = 0;
+  bool cut_before = false;                 // the film was cut between the frame before and this one
+  std::optional<FaceLandmarks> landmarks;  // none: no face
+  FaceCrop crop;                           // empty without landmarks
+};
+
+class FaceFollower {
+ public:
+  // model_dir: face_detection.onnx and face_landmark.onnx.
+  static Result<FaceFollower> Load(const std::string& model_dir, const CanonicalMesh& canonical);
+
+  FollowedFrame Next(const ImageRgb8& frame, double time_s);
+
+ private:
+  FaceFollower(FaceDetector detector, FaceLandmarker landmarker);
+  bool IsCut(const ImageRgb8& frame);
+  FaceDetector detector_;
+  FaceLandmarker landmarker_;
+  std::optional<FaceRegion> region_;
+  Image<std::uint8_t, 1> thumbnail_;  // of the frame before
+  double usual_change_ = 0;           // running mean of the thumbnails' change
+};
+
+}  // namespace lorgnette

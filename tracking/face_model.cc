@@ -1,0 +1,192 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "tracking/face_model.h"
+
+#include <Eigen/Cholesky>
+#include <Eigen/Geometry>
+#include <Eigen/SVD>
+#include <algorithm>
+#include <cmath>
+
+#include "base/check.h"
+#include "base/units.h"
+
+namespace lorgnette {
+namespace {
+
+// The axes of the canonical file look up against the upright neutral head of the ICT face model by
+// this much, measured through the landmark network (docs/tracking.md).
+constexpr double kCanonicalPitchDeg = 2.0;
+
+// Landmarks scatter and slide by this share of the pupil distance (docs/tracking.md).
+constexpr double kLandmarkSigma = 0.03;
+// How far a personal face may leave the canonical one: across and up, and in depth (mm).
+constexpr double kShapeSigmaAcross = 5, kShapeSigmaDepth = 2;
+constexpr double kFrontalWithinDeg =
+    10;                     // weight of a frame falls with the angle to its most frontal
+constexpr int kRounds = 4;  // of poses and points in turn
+constexpr std::size_t kMostFrames = 60;  // frames that shape the face
+
+Eigen::Vector3d MeanOf(const std::vector<Eigen::Vector3d>& points, const std::array<int, 4>& ids) {
+  Eigen::Vector3d sum = Eigen::Vector3d::Zero();
+  for (const int i : ids) sum += points[std::size_t(i)];
+  return sum / double(ids.size());
+}
+
+Eigen::Vector3d Apex(const std::vector<Eigen::Vector3d>& points, const EyeLandmarks& eye) {
+  const Eigen::Vector3d corners =
+      (points[std::size_t(eye.outer)] + points[std::size_t(eye.inner)]) / 2;
+  const Eigen::Vector3d lids = (MeanOf(points, eye.upper) + MeanOf(points, eye.lower)) / 2;
+  Eigen::Vector3d apex = (corners + lids) / 2;
+  apex.z() = lids.z();
+  return apex;
+}
+
+// Weighted rigid fit b ~ rotation * a + shift (Kabsch).
+Eigen::Matrix3d BestRotation(const std::vector<Eigen::Vector3d>& a,
+                             const std::vector<Eigen::Vector3d>& b,
+                             const std::vector<double>& weights) {
+  Eigen::Vector3d mean_a = Eigen::Vector3d::Zero(), mean_b = Eigen::Vector3d::Zero();
+  double total = 0;
+  for (std::size_t i = 0; i < a.size(); ++i) {
+    mean_a += weights[i] * a[i];
+    mean_b += weights[i] * b[i];
+    total += weights[i];
+  }
+  mean_a /= total;
+  mean_b /= total;
+  Eigen::Matrix3d cross = Eigen::Matrix3d::Zero();
+  for (std::size_t i = 0; i < a.size(); ++i) {
+    cross += weights[i] * (b[i] - mean_b) * (a[i] - mean_a).transpose();
+  }
+  const Eigen::JacobiSVD<Eigen::Matrix3d> svd(cross, Eigen::ComputeFullU | Eigen::ComputeFullV);
+  Eigen::Vector3d sign(1, 1,
+                       (svd.matrixU() * svd.matrixV().transpose()).determinant() < 0 ? -1 : 1);
+  return svd.matrixU() * sign.asDiagonal() * svd.matrixV().transpose();
+}
+
+double AngleToCamera(const Eigen::Isometry3d& camera_from_head) {
+  const Eigen::Vector3d out_of_face = camera_from_head.linear().col(2);
+  return std::acos(std::clamp(-out_of_face.z(), -1.0, 1.0));
+}
+
+}  // namespace
+
+Pupils PupilsOf(const std::vector<Eigen::Vector3d>& points) {
+  return {Apex(points, kRightEye), Apex(points, kLeftEye)};
+}
+
+Similarity HeadFromPoints(const std::vector<Eigen::Vector3d>& points,
+                          const CanonicalMesh& canonical, double pd_mm) {
+  LG_CHECK_EQ(points.size(), std::size_t(kLandmarks));
+  Similarity head;
+  const Eigen::Matrix3d upright =
+      Eigen::AngleAxisd(-RadiansFromDegrees(kCanonicalPitchDeg), Eigen::Vector3d::UnitX())
+          .toRotationMatrix();
+  head.rotation = BestRotation(points, canonical.mesh.positions, canonical.rigid_weight);
+  // The points, roughly upright, against their mirror image: half of the rotation between the two
+  // turns the plane of symmetry to x = 0.
+  std::vector<Eigen::Vector3d> turned(points.size()), mirrored(points.size());
+  for (std::size_t i = 0; i < points.size(); ++i) turned[i] = head.rotation * points[i];
+  for (std::size_t i = 0; i < points.size(); ++i) {
+    mirrored[i] = turned[std::size_t(canonical.mirror[i])].cwiseProduct(Eigen::Vector3d(-1, 1, 1));
+  }
+  Eigen::AngleAxisd half(BestRotation(turned, mirrored, canonical.rigid_weight));
+  half.angle() /= 2;
+  head.rotation = upright * half.toRotationMatrix() * head.rotation;
+  for (std::size_t i = 0; i < points.size(); ++i) turned[i] = head.rotation * points[i];
+  const Pupils pupils = PupilsOf(turned);
+  head.scale = pd_mm / pupils.distance();
+  head.shift = -head.scale * (pupils.right + pupils.left) / 2;
+  return head;
+}
+
+std::vector<Eigen::Vector3d> CanonicalHead(const CanonicalMesh& canonical, double pd_mm) {
+  const Similarity head = HeadFromPoints(canonical.mesh.positions, canonical, pd_mm);
+  std::vector<Eigen::Vector3d> points;
+  for (const Eigen::Vector3d& p : canonical.mesh.positions) points.push_back(head(p));
+  return points;
+}
+
+PoseFit FitLandmarkPose(const Camera& camera, const std::vector<Eigen::Vector3d>& head,
+                        const std::vector<double>& weights, const FaceLandmarks& landmarks) {
+  const auto pixel = [&](int i) {
+    return Eigen::Vector2d(landmarks.points[std::size_t(i)].head<2>());
+  };
+  const Eigen::Vector2d right = pixel(kRightEye.outer), left = pixel(kLeftEye.outer);
+  const double span_mm =
+      (head[std::size_t(kLeftEye.outer)] - head[std::size_t(kRightEye.outer)]).norm();
+  const double span_px = std::max(1.0, (left - right).norm());
+  Eigen::Isometry3d guess = Eigen::Isometry3d::Identity();
+  const double roll = std::atan2(left.y() - right.y(), left.x() - right.x());
+  guess.linear() = Eigen::AngleAxisd(roll, Eigen::Vector3d::UnitZ()).toRotationMatrix() *
+                   Eigen::Vector3d(1, -1, -1).asDiagonal();
+  const double depth = camera.fx * span_mm / span_px;
+  const Eigen::Vector2d middle = (right + left) / 2;
+  guess.translation() = depth * camera.Direction(middle.x(), middle.y());
+  std::vector<PointSighting> sightings;
+  for (std::size_t i = 0; i < head.size(); ++i) {
+    if (weights[i] > 0) sightings.push_back({head[i], landmarks.points[i].head<2>(), weights[i]});
+  }
+  return FitPose(camera, sightings, guess, 2 * kLandmarkSigma * span_px);
+}
+
+std::vector<Eigen::Vector3d> FitFace(const Camera& camera, const CanonicalMesh& canonical,
+                                     const std::vector<const FaceLandmarks*>& frames, double pd_mm,
+                                     std::vector<PoseFit>& poses) {
+  const std::vector<Eigen::Vector3d> prior = CanonicalHead(canonical, pd_mm);
+  std::vector<Eigen::Vector3d> head = prior;
+  poses.assign(frames.size(), PoseFit());
+  const auto fit_poses = [&](std::size_t stride) {
+    for (std::size_t f = 0; f < frames.size(); f += stride) {
+      if (frames[f] == nullptr) continue;
+      poses[f] = FitLandmarkPose(camera, head, canonical.rigid_weight, *frames[f]);
+    }
+  };
+  fit_poses(1);
+  double most_frontal = kPi;
+  for (std::size_t f = 0; f < frames.size(); ++f) {
+    if (frames[f]) most_frontal = std::min(most_frontal, AngleToCamera(poses[f].camera_from_head));
+  }
+  const std::size_t stride = std::max<std::size_t>(1, frames.size() / kMostFrames);
+  const Eigen::Vector3d stiffness(1 / (kShapeSigmaAcross * kShapeSigmaAcross),
+                                  1 / (kShapeSigmaAcross * kShapeSigmaAcross),
+                                  1 / (kShapeSigmaDepth * kShapeSigmaDepth));
+  for (int round = 0; round < kRounds; ++round) {
+    double total = 0;
+    std::vector<double> frame_weight(frames.size(), 0);
+    for (std::size_t f = 0; f < frames.size(); f += stride) {
+      if (frames[f] == nullptr) continue;
+      const double angle = AngleToCamera(poses[f].camera_from_head) - most_frontal;
+      const double off = angle / RadiansFromDegrees(kFrontalWithinDeg);
+      total += frame_weight[f] = std::exp(-0.5 * off * off);
+    }
+    for (std::size_t i = 0; i < head.size(); ++i) {
+      Eigen::Matrix3d normal = stiffness.asDiagonal();
+      Eigen::Vector3d right = stiffness.cwiseProduct(prior[i] - head[i]);
+      for (std::size_t f = 0; f < frames.size(); f += stride) {
+        if (frame_weight[f] <= 0) continue;
+        const Eigen::Isometry3d& pose = poses[f].camera_from_head;
+        const Eigen::Vector3d p = pose * head[i];
+        const double px_per_mm = camera.fx / p.z();
+        const double sigma_px = kLandmarkSigma * pd_mm * px_per_mm;
+        Eigen::Matrix<double, 2, 3> by_point;
+        by_point << px_per_mm, 0, -px_per_mm * p.x() / p.z(),  //
+            0, px_per_mm, -px_per_mm * p.y() / p.z();
+        by_point *= pose.linear();
+        const Eigen::Vector2d error = frames[f]->points[i].head<2>() - camera.Project(p);
+        // The frames' errors are not independent: together they count as one.
+        const double w = frame_weight[f] / total / (sigma_px * sigma_px) /
+                         (1 + error.squaredNorm() / (9 * sigma_px * sigma_px));
+        normal += w * by_point.transpose() * by_point;
+        right += w * by_point.transpose() * error;
+      }
+      head[i] += normal.ldlt().solve(right);
+    }
+    const Similarity aligned = HeadFromPoints(head, canonical, pd_mm);
+    for (Eigen::Vector3d& p : head) p = aligned(p);
+    fit_poses(round + 1 < kRounds ? stride : 1);
+  }
+  return head;
+}
+
+}  // namespace lorgnette

@@ -1,0 +1,56 @@
+// SPDX-License-Identifier: Apache-2.0
+// The personal face: 468 points in head space, and how head space is tied to them.
+#pragma once
+
+#include <Eigen/Core>
+#include <optional>
+#include <vector>
+
+#include "base/camera.h"
+#include "tracking/canonical_mesh.h"
+#include "tracking/face_landmarker.h"
+#include "tracking/pose_fit.h"
+
+namespace lorgnette {
+
+// Corneal apices, the wearer's right and left eye, in the space of `points`.
+// Across and in height the middle between the lids' corners and the lids' margins; in depth level
+// with the margins, on which the cornea lies.
+struct Pupils {
+  Eigen::Vector3d right, left;
+  double distance() const { return (left - right).norm(); }
+};
+Pupils PupilsOf(const std::vector<Eigen::Vector3d>& points);
+
+// head = scale * rotation * point + shift.
+struct Similarity {
+  double scale = 1;
+  Eigen::Matrix3d rotation = Eigen::Matrix3d::Identity();
+  Eigen::Vector3d shift = Eigen::Vector3d::Zero();
+  Eigen::Vector3d operator()(const Eigen::Vector3d& p) const {
+    return scale * (rotation * p) + shift;
+  }
+};
+
+// Takes `points` (any space, canonical topology) to head space: mirror plane x = 0 by the best fit
+// of the points to their own mirror image, upright as the canonical face, pupils `pd_mm` apart and
+// the origin midway between them.
+Similarity HeadFromPoints(const std::vector<Eigen::Vector3d>& points,
+                          const CanonicalMesh& canonical, double pd_mm);
+
+// The canonical face in head space.
+std::vector<Eigen::Vector3d> CanonicalHead(const CanonicalMesh& canonical, double pd_mm);
+
+// Pose of a face of the given points from its landmarks alone: the start of every finer fit.
+PoseFit FitLandmarkPose(const Camera& camera, const std::vector<Eigen::Vector3d>& head,
+                        const std::vector<double>& weights, const FaceLandmarks& landmarks);
+
+// Moves `head` to fit the landmarks of all frames (null: none) together with their poses, held to
+// the canonical face where they cannot tell; poses and points are refined in turn. Frames that look
+// straight at the camera count most, since the landmarks of a turned face slide over the skin.
+// Returns the points, in head space; `poses` come back fitted to them.
+std::vector<Eigen::Vector3d> FitFace(const Camera& camera, const CanonicalMesh& canonical,
+                                     const std::vector<const FaceLandmarks*>& frames, double pd_mm,
+                                     std::vector<PoseFit>& poses);
+
+}  // namespace lorgnette

@@ -1,0 +1,109 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "tracking/tracker.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <opencv2/core.hpp>
+#include <utility>
+#include <vector>
+
+#include "base/units.h"
+#include "tracking/canonical_mesh.h"
+#include "tracking/face_follower.h"
+#include "tracking/face_model.h"
+#include "tracking/track_smoothing.h"
+
+namespace lorgnette {
+namespace {
+
+constexpr double kDefaultFieldDeg = 62;  // of view along the longer side, when nothing tells it
+
+Camera CameraFor(int width, int height, double focal_px) {
+  if (focal_px <= 0) {
+    const double longer = std::max(width, height);
+    focal_px = longer / 2 / std::tan(RadiansFromDegrees(kDefaultFieldDeg) / 2);
+  }
+  return {width, height, focal_px, focal_px, width / 2.0, height / 2.0};
+}
+
+}  // namespace
+
+struct Tracker::State {
+  TrackerOptions options;
+  CanonicalMesh canonical;
+  FaceFollower follower;
+  int width = 0, height = 0;
+  std::vector<FollowedFrame> frames;
+};
+
+Tracker::Tracker(std::unique_ptr<State> state) : state_(std::move(state)) {}
+Tracker::Tracker(Tracker&&) noexcept = default;
+Tracker::~Tracker() = default;
+
+Result<Tracker> Tracker::Create(const TrackerOptions& options) {
+  if (!(options.pd_mm >= kMinPdMm && options.pd_mm <= kMaxPdMm)) {
+    return UsageError(fmt::format("pd: got {} mm, want {}..{}", options.pd_mm, kMinPdMm, kMaxPdMm));
+  }
+  if (!(options.focal_px >= 0 && options.focal_px <= kMaxFocalPx)) {
+    return UsageError(fmt::format("focal: got {} px, want 0..{}", options.focal_px, kMaxFocalPx));
+  }
+  LG_ASSIGN(CanonicalMesh canonical, ReadCanonicalMesh(options.model_dir + "/canonical_face.obj"));
+  LG_ASSIGN(FaceFollower follower, FaceFollower::Load(options.model_dir, canonical));
+  return Tracker(
+      std::make_unique<State>(State{options, std::move(canonical), std::move(follower), 0, 0, {}}));
+}
+
+Status Tracker::Add(const ImageRgb8& frame, double time_s) {
+  State& s = *state_;
+  if (frame.empty()) return Failure("frame: got an empty image, want pixels");
+  if (s.frames.empty()) {
+    s.width = frame.width;
+    s.height = frame.height;
+  } else if (frame.width != s.width || frame.height != s.height) {
+    return Failure(fmt::format("frame {}: got {}x{}, want {}x{} as the first", s.frames.size(),
+                               frame.width, frame.height, s.width, s.height));
+  }
+  try {
+    s.frames.push_back(s.follower.Next(frame, time_s));
+  } catch (const cv::Exception& e) {
+    return Failure(fmt::format("frame {}: the face network failed: {}", s.frames.size(), e.err));
+  }
+  return {};
+}
+
+Result<HeadTrack> Tracker::Finish() {
+  State& s = *state_;
+  std::vector<const FaceLandmarks*> landmarks;
+  for (const FollowedFrame& frame : s.frames) {
+    landmarks.push_back(frame.landmarks ? &*frame.landmarks : nullptr);
+  }
+  if (std::count(landmarks.begin(), landmarks.end(), nullptr) == long(landmarks.size())) {
+    return Failure(fmt::format("video: no face found in any of {} frames, want at least one",
+                               s.frames.size()));
+  }
+  HeadTrack track;
+  track.camera = CameraFor(s.width, s.height, s.options.focal_px);
+  track.pd_mm = s.options.pd_mm;
+  std::vector<PoseFit> poses;
+  track.face = s.canonical.mesh;
+  track.face.positions = FitFace(track.camera, s.canonical, landmarks, track.pd_mm, poses);
+  ComputeVertexNormals(track.face);
+  const Pupils pupils = PupilsOf(track.face.positions);
+  track.pupil_right = pupils.right;
+  track.pupil_left = pupils.left;
+  for (std::size_t f = 0; f < s.frames.size(); ++f) {
+    TrackedFrame& out = track.frames.emplace_back();
+    out.time_s = s.frames[f].time_s;
+    out.found = landmarks[f] != nullptr;
+    out.camera_from_head = poses[f].camera_from_head;
+  }
+  std::vector<bool> cut_before;
+  for (const FollowedFrame& frame : s.frames) cut_before.push_back(frame.cut_before);
+  SmoothTrack(cut_before, track);
+  FollowExpression(landmarks, cut_before, track);
+  return track;
+}
+
+}  // namespace lorgnette
