@@ -118,13 +118,14 @@ Result<Candidate> Try(const Plan& plan, double thickness_mm) {
         thickness_mm, plan.front.value(), plan.ReducedPower(thickness_mm), kMaxReducedPower));
   }
   Candidate candidate{plan.At(thickness_mm), {}};
-  candidate.edge = EdgeOver(candidate.lens, plan.outline);
-  if (std::isnan(candidate.edge.least_mm)) {
+  const auto edge = EdgeOver(candidate.lens, plan.outline);
+  if (!edge) {
     const double n = plan.order.medium.index_d, rim = plan.outline.radius_mm();
     const double front = plan.front.per_mm() / (n - 1);
     if (std::abs(front) * rim >= 1) return tl::unexpected(NoSag("front", front, n, rim));
     return tl::unexpected(NoSag("back", SteepestVertexCurvature(candidate.lens.back), n, rim));
   }
+  candidate.edge = *edge;
   return candidate;
 }
 

@@ -3,7 +3,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 
 #include "base/check.h"
 #include "base/units.h"
@@ -12,7 +11,6 @@
 namespace lorgnette {
 namespace {
 
-constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
 constexpr int kRings = 8;
 
 // Positive half of the ten-point Gauss-Legendre rule on [-1, 1].
@@ -71,35 +69,37 @@ Outline Outline::FromPolygon(const std::vector<Eigen::Vector2d>& contour_mm) {
   return outline;
 }
 
-double AxialThickness(const Lens& lens, double x, double y) {
+std::optional<double> AxialThickness(const Lens& lens, double x, double y) {
   const auto front = lens.front.Jet(x, y);
-  if (!front) return kNan;
+  if (!front) return std::nullopt;
   if (lens.back_tilt_x == 0 && lens.back_tilt_y == 0) {
     const auto back = lens.back.Jet(x, y);
-    return back ? lens.center_thickness_mm + back->z - front->z : kNan;
+    return back ? std::optional(lens.center_thickness_mm + back->z - front->z) : std::nullopt;
   }
   const auto back = IntersectBack(lens, {{x, y, 0}, {0, 0, 1}});
-  return back ? back->point.z() - front->z : kNan;
+  return back ? std::optional(back->point.z() - front->z) : std::nullopt;
 }
 
-EdgeThickness EdgeOver(const Lens& lens, const Outline& outline) {
+std::optional<EdgeThickness> EdgeOver(const Lens& lens, const Outline& outline) {
   EdgeThickness edge;
   edge.least_mm = edge.least_inside_mm = HUGE_VAL;
   edge.greatest_mm = -HUGE_VAL;
   for (const Eigen::Vector2d& p : outline.rim()) {
-    const double t = AxialThickness(lens, p.x(), p.y());
-    if (std::isnan(t)) return {kNan, kNan, kNan, p, p};
-    if (t < edge.least_mm) {
-      edge.least_mm = t;
+    const auto t = AxialThickness(lens, p.x(), p.y());
+    if (!t) return std::nullopt;
+    if (*t < edge.least_mm) {
+      edge.least_mm = *t;
       edge.least_at = p;
     }
-    if (t > edge.greatest_mm) {
-      edge.greatest_mm = t;
+    if (*t > edge.greatest_mm) {
+      edge.greatest_mm = *t;
       edge.greatest_at = p;
     }
     for (int ring = 1; ring < kRings; ++ring) {
       const Eigen::Vector2d q = p * (double(ring) / kRings);
-      edge.least_inside_mm = std::min(edge.least_inside_mm, AxialThickness(lens, q.x(), q.y()));
+      const auto inside = AxialThickness(lens, q.x(), q.y());
+      if (!inside) return std::nullopt;
+      edge.least_inside_mm = std::min(edge.least_inside_mm, *inside);
     }
   }
   edge.least_inside_mm = std::min(edge.least_inside_mm, edge.least_mm);
@@ -108,7 +108,7 @@ EdgeThickness EdgeOver(const Lens& lens, const Outline& outline) {
 
 double MassOver(const Lens& lens, const Outline& outline) {
   const double volume_mm3 =
-      outline.Integrate([&](double x, double y) { return AxialThickness(lens, x, y); });
+      outline.Integrate([&](double x, double y) { return AxialThickness(lens, x, y).value_or(0); });
   return volume_mm3 / 1000 * lens.medium.density_g_cm3;
 }
 

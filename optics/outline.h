@@ -4,6 +4,7 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <optional>
 #include <vector>
 
 #include "optics/lens.h"
@@ -54,18 +55,19 @@ class Outline {
   double radius_mm_ = 0;
 };
 
-// Distance along the axis from the front to the back surface over (x, y); negative where they have
-// crossed, NaN where one of them does not exist.
-double AxialThickness(const Lens& lens, double x, double y);
+// Distance along the axis from the front to the back surface over (x, y) of the lens frame;
+// negative where they have crossed, nullopt where one of them has ended.
+std::optional<double> AxialThickness(const Lens& lens, double x, double y);
 
 struct EdgeThickness {
   double least_mm = 0, greatest_mm = 0;
   double least_inside_mm = 0;  // over the rim and seven rings inside it
   Eigen::Vector2d least_at{0, 0}, greatest_at{0, 0};
 };
-// All NaN where a surface does not reach the rim.
-EdgeThickness EdgeOver(const Lens& lens, const Outline& outline);
+// nullopt where a surface does not reach the rim.
+std::optional<EdgeThickness> EdgeOver(const Lens& lens, const Outline& outline);
 
-double MassOver(const Lens& lens, const Outline& outline);  // g
+// For a lens that reaches its rim, in grams.
+double MassOver(const Lens& lens, const Outline& outline);
 
 }  // namespace lorgnette
