@@ -13,14 +13,14 @@
 namespace lorgnette {
 namespace {
 
-// The axes of the canonical file look up against the upright neutral head of the ICT face model by
-// this much, measured through the landmark network (docs/tracking.md).
+// The axes of the canonical file look down against the upright neutral head of the ICT face model
+// by this much, measured through the landmark network (docs/tracking.md).
 constexpr double kCanonicalPitchDeg = 2.0;
 
 // Landmarks scatter and slide by this share of the pupil distance (docs/tracking.md).
 constexpr double kLandmarkSigma = 0.03;
 // How far a personal face may leave the canonical one: across and up, and in depth (mm).
-constexpr double kShapeSigmaAcross = 5, kShapeSigmaDepth = 2;
+constexpr double kShapeSigmaAcross = 20, kShapeSigmaDepth = 2;
 constexpr double kFrontalWithinDeg =
     10;                     // weight of a frame falls with the angle to its most frontal
 constexpr int kRounds = 4;  // of poses and points in turn
@@ -36,9 +36,7 @@ Eigen::Vector3d Apex(const std::vector<Eigen::Vector3d>& points, const EyeLandma
   const Eigen::Vector3d corners =
       (points[std::size_t(eye.outer)] + points[std::size_t(eye.inner)]) / 2;
   const Eigen::Vector3d lids = (MeanOf(points, eye.upper) + MeanOf(points, eye.lower)) / 2;
-  Eigen::Vector3d apex = (corners + lids) / 2;
-  apex.z() = lids.z();
-  return apex;
+  return {corners.x(), (corners.y() + lids.y()) / 2, lids.z()};
 }
 
 // Weighted rigid fit b ~ rotation * a + shift (Kabsch).
@@ -80,7 +78,7 @@ Similarity HeadFromPoints(const std::vector<Eigen::Vector3d>& points,
   LG_CHECK_EQ(points.size(), std::size_t(kLandmarks));
   Similarity head;
   const Eigen::Matrix3d upright =
-      Eigen::AngleAxisd(-RadiansFromDegrees(kCanonicalPitchDeg), Eigen::Vector3d::UnitX())
+      Eigen::AngleAxisd(RadiansFromDegrees(kCanonicalPitchDeg), Eigen::Vector3d::UnitX())
           .toRotationMatrix();
   head.rotation = BestRotation(points, canonical.mesh.positions, canonical.rigid_weight);
   // The points, roughly upright, against their mirror image: half of the rotation between the two

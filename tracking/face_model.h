@@ -14,8 +14,8 @@
 namespace lorgnette {
 
 // Corneal apices, the wearer's right and left eye, in the space of `points`.
-// Across and in height the middle between the lids' corners and the lids' margins; in depth level
-// with the margins, on which the cornea lies.
+// Across, midway between the corners of the lids; in height, between the middle of the corners and
+// that of the margins; in depth level with the margins, which lie on the cornea.
 struct Pupils {
   Eigen::Vector3d right, left;
   double distance() const { return (left - right).norm(); }

@@ -4,32 +4,17 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <cmath>
 #include <opencv2/core.hpp>
 #include <utility>
 #include <vector>
 
-#include "base/units.h"
 #include "tracking/canonical_mesh.h"
 #include "tracking/face_follower.h"
 #include "tracking/face_model.h"
+#include "tracking/focal_prior.h"
 #include "tracking/track_smoothing.h"
 
 namespace lorgnette {
-namespace {
-
-constexpr double kDefaultFieldDeg = 62;  // of view along the longer side, when nothing tells it
-
-Camera CameraFor(int width, int height, double focal_px) {
-  if (focal_px <= 0) {
-    const double longer = std::max(width, height);
-    focal_px = longer / 2 / std::tan(RadiansFromDegrees(kDefaultFieldDeg) / 2);
-  }
-  return {width, height, focal_px, focal_px, width / 2.0, height / 2.0};
-}
-
-}  // namespace
-
 struct Tracker::State {
   TrackerOptions options;
   CanonicalMesh canonical;
@@ -84,8 +69,11 @@ Result<HeadTrack> Tracker::Finish() {
                                s.frames.size()));
   }
   HeadTrack track;
-  track.camera = CameraFor(s.width, s.height, s.options.focal_px);
   track.pd_mm = s.options.pd_mm;
+  const double focal_px = s.options.focal_px > 0
+                              ? s.options.focal_px
+                              : TypicalFocal(s.width, s.height, track.pd_mm, landmarks);
+  track.camera = {s.width, s.height, focal_px, focal_px, s.width / 2.0, s.height / 2.0};
   std::vector<PoseFit> poses;
   track.face = s.canonical.mesh;
   track.face.positions = FitFace(track.camera, s.canonical, landmarks, track.pd_mm, poses);

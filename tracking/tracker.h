@@ -18,7 +18,7 @@ inline constexpr double kMaxFocalPx = 1e6;
 struct TrackerOptions {
   std::string model_dir;  // folder with the converted networks and the canonical mesh
   double pd_mm = 64;      // scale: distance between the pupils, kMinPdMm..kMaxPdMm
-  double focal_px = 0;    // 0: estimated from the clip, or a 62 degree default if it cannot
+  double focal_px = 0;    // 0: from the clip, as far as it tells (tracking/focal_prior.h)
 };
 
 class Tracker {
