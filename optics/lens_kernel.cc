@@ -154,7 +154,7 @@ HWY_INLINE void TraceOne(D d, const First& first, const Second& second, const Le
 
 // One register of rays inside the glass to one face.
 template <class D, class T = hn::TFromD<D>>
-HWY_INLINE void FaceOne(D d, const GeneralFace<D>& face, const FaceJob<T>& job,
+HWY_INLINE void FaceOne(D d, const GeneralFace<D, false>& face, const FaceJob<T>& job,
                         const RayArrays<const T>& in, const FaceBatchOutput<T>& out,
                         std::size_t i) {
   const auto dir = LoadDirections(d, in, i);
@@ -247,18 +247,19 @@ template <typename T>
 HWY_INLINE void TraceLensOf(const LensJob<T>& job) {
   const hn::ScalableTag<T> d;
   using D = hn::ScalableTag<T>;
-  const auto plain = [](const FaceParams<T>& f) { return !f.torus && !f.tilted; };
-  if (plain(job.first) && plain(job.second)) {
-    TraceAll<SphereFace<D>, SphereFace<D>>(d, job);
-  } else {
-    TraceAll<GeneralFace<D>, GeneralFace<D>>(d, job);
-  }
+  using Sphere = SphereFace<D>;
+  using Upright = GeneralFace<D, true>;
+  using Tilted = GeneralFace<D, false>;
+  if (job.first.tilted || job.second.tilted) return TraceAll<Tilted, Tilted>(d, job);
+  if (job.first.torus) return TraceAll<Upright, Upright>(d, job);
+  if (job.second.torus) return TraceAll<Sphere, Upright>(d, job);
+  TraceAll<Sphere, Sphere>(d, job);
 }
 
 template <typename T>
 HWY_INLINE void TraceFaceOf(const FaceJob<T>& job) {
   const hn::ScalableTag<T> d;
-  const GeneralFace<hn::ScalableTag<T>> face(d, job.face, job.sense);
+  const GeneralFace<hn::ScalableTag<T>, false> face(d, job.face, job.sense);
   const std::size_t lanes = hn::Lanes(d);
   std::size_t i = 0;
   for (; i + lanes <= job.n; i += lanes) FaceOne(d, face, job, job.in, job.out, i);

@@ -102,11 +102,12 @@ struct SphereFace {
   }
 };
 
-// Sphere or torus with any axis.
-template <class D>
+// Sphere or torus. kUpright: its axis is that of the lens (no ground prism).
+template <class D, bool kUpright>
 struct GeneralFace {
   using T = hn::TFromD<D>;
   using V = hn::Vec<D>;
+  using M = hn::Mask<D>;
   D d;
   V c, generator2, generator, delta, sense;
   Vec3<D> a, g;
@@ -123,95 +124,194 @@ struct GeneralFace {
         g{hn::Set(tag, f.gx), hn::Set(tag, f.gy), hn::Set(tag, f.gz)},
         torus(f.torus) {}
 
-  // Half of G, N, and what bounds the sheet, at one point of the line.
-  struct Jet {
-    V value;
-    Vec3<D> n;
-    V w2, scale;  // 1 - generator^2 y^2 and 1 - c s: both positive on the sheet
-  };
-  HWY_INLINE Jet JetAt(const Vec3<D>& p) const {
-    const V one = hn::Set(d, 1), half = hn::Set(d, T(0.5));
-    const V y = Dot<D>(g, p), y2 = hn::Mul(y, y);
-    Jet jet;
-    jet.w2 = hn::NegMulAdd(generator2, y2, one);
-    // Off the domain the slope of its last zone continues, so that Newton can come back.
-    const V w = hn::Sqrt(hn::Max(jet.w2, hn::Set(d, T(1e-4))));
-    const V w1 = hn::Add(one, w);
-    const V inverse = hn::Div(one, hn::Mul(w, w1));
-    const V sag = hn::Mul(hn::Mul(generator, y2), hn::Mul(w, inverse));
-    const V y_over_w = hn::Mul(y, hn::Mul(w1, inverse));
-    const V curved = hn::MulAdd(c, Dot<D>(p, p), hn::Mul(delta, hn::MulAdd(sag, sag, y2)));
-    jet.value = hn::NegMulAdd(half, curved, Dot<D>(a, p));
-    const V k = hn::Mul(delta, y_over_w);
-    jet.n = {hn::NegMulAdd(c, p.x, hn::NegMulAdd(k, g.x, a.x)),
-             hn::NegMulAdd(c, p.y, hn::NegMulAdd(k, g.y, a.y)),
-             hn::NegMulAdd(c, p.z, hn::NegMulAdd(k, g.z, a.z))};
-    jet.scale = hn::NegMulAdd(c, sag, one);
-    return jet;
+  HWY_INLINE V AxisDot(const Vec3<D>& v) const { return kUpright ? v.z : Dot<D>(a, v); }
+  HWY_INLINE V GeneratorDot(const Vec3<D>& v) const {
+    return kUpright ? hn::MulAdd(g.x, v.x, hn::Mul(g.y, v.y)) : Dot<D>(g, v);
   }
 
   HWY_INLINE FaceHit<D> Intersect(const Vec3<D>& p, const Vec3<D>& dir) const {
-    const V zero = hn::Zero(d), pa = Dot<D>(a, p), da = Dot<D>(a, dir);
-    FaceHit<D> hit;
-    if (!torus) {
-      const V b = hn::NegMulAdd(c, Dot<D>(p, dir), da);
-      const V h = hn::MulSub(c, Dot<D>(p, p), hn::Add(pa, pa));
-      hit.distance = StableRoot(d, c, b, h, sense, &hit.cosine, &hit.ok);
-      hit.point = Along<D>(p, hit.distance, dir);
-      hit.normal = {hn::NegMulAdd(c, hit.point.x, a.x), hn::NegMulAdd(c, hit.point.y, a.y),
-                    hn::NegMulAdd(c, hit.point.z, a.z)};
-    } else {
-      IntersectTorus(p, dir, pa, da, &hit);
-    }
+    FaceHit<D> hit = torus ? IntersectTorus(p, dir) : IntersectSphere(p, dir);
     const auto near = hn::Lt(hn::Abs(hit.distance), hn::Set(d, T(kFarthest_mm)));
-    hit.ok = hn::And(hit.ok, hn::And(near, hn::Gt(Dot<D>(a, hit.normal), zero)));
+    hit.ok = hn::And(hit.ok, hn::And(near, hn::Gt(AxisDot(hit.normal), hn::Zero(d))));
     return hit;
   }
 
-  HWY_INLINE void IntersectTorus(const Vec3<D>& p, const Vec3<D>& dir, V pa, V da,
-                                 FaceHit<D>* hit) const {
-    constexpr bool kDouble = sizeof(T) == 8;
-    constexpr int kSteps = kDouble ? 2 : 1;
-    constexpr int kMoreSteps = 12;
-    constexpr T kResidual_mm = kDouble ? T(2e-13) : T(2e-5);
-    const V zero = hn::Zero(d), one = hn::Set(d, 1);
+ private:
+  HWY_INLINE FaceHit<D> IntersectSphere(const Vec3<D>& p, const Vec3<D>& dir) const {
+    const V pa = AxisDot(p);
+    const V b = hn::NegMulAdd(c, Dot<D>(p, dir), AxisDot(dir));
+    const V h = hn::MulSub(c, Dot<D>(p, p), hn::Add(pa, pa));
+    FaceHit<D> hit;
+    hit.distance = StableRoot(d, c, b, h, sense, &hit.cosine, &hit.ok);
+    hit.point = Along<D>(p, hit.distance, dir);
+    hit.normal = NormalAt(hit.point, hn::Zero(d));
+    return hit;
+  }
 
-    // Start: the quadric that G becomes when s^2 is frozen near the ray's start.
-    const V y0 = Dot<D>(g, p), yd = Dot<D>(g, dir);
-    const V y2 = hn::Mul(y0, y0);
-    const V sag = hn::Mul(hn::Mul(hn::Set(d, T(0.5)), generator), y2);
+  // What the generator circle gives at one point.
+  struct Circle {
+    V y, y2;
+    V w2;       // 1 - generator^2 y^2: positive on the sheet
+    V inverse;  // 1 / w
+    V half;     // 1 / (1 + w)
+    V sag;
+  };
+  // By square root and division. Off the domain the slope of its last zone continues, so that
+  // Newton can come back.
+  HWY_INLINE Circle CircleAt(const Vec3<D>& p) const {
+    const V one = hn::Set(d, 1);
+    Circle s;
+    s.y = GeneratorDot(p);
+    s.y2 = hn::Mul(s.y, s.y);
+    s.w2 = hn::NegMulAdd(generator2, s.y2, one);
+    const V w = hn::Sqrt(hn::Max(s.w2, hn::Set(d, T(1e-4))));
+    const V w1 = hn::Add(one, w);
+    const V both = hn::Div(one, hn::Mul(w, w1));
+    s.inverse = hn::Mul(w1, both);
+    s.half = hn::Mul(w, both);
+    s.sag = hn::Mul(hn::Mul(generator, s.y2), s.half);
+    return s;
+  }
+  // The same from a neighbour's by one cubic iteration for each reciprocal. `defect` receives
+  // 1 - w^2 r^2 of the neighbour's r: the error left is 5/16 of its cube.
+  HWY_INLINE Circle CircleNear(const Circle& neighbour, const Vec3<D>& p, V* defect) const {
+    const V one = hn::Set(d, 1);
+    Circle s;
+    s.y = GeneratorDot(p);
+    s.y2 = hn::Mul(s.y, s.y);
+    s.w2 = hn::NegMulAdd(generator2, s.y2, one);
+    const V r = neighbour.inverse;
+    *defect = hn::NegMulAdd(s.w2, hn::Mul(r, r), one);
+    s.inverse = hn::MulAdd(hn::Mul(r, *defect),
+                           hn::MulAdd(*defect, hn::Set(d, T(0.375)), hn::Set(d, T(0.5))), r);
+    const V w1 = hn::MulAdd(s.w2, s.inverse, one);
+    const V gap = hn::NegMulAdd(w1, neighbour.half, one);
+    s.half = hn::MulAdd(hn::Mul(neighbour.half, gap), hn::Add(one, gap), neighbour.half);
+    s.sag = hn::Mul(hn::Mul(generator, s.y2), s.half);
+    return s;
+  }
+  // G / 2.
+  HWY_INLINE V ValueAt(const Vec3<D>& p, const Circle& s) const {
+    const V curved = hn::MulAdd(c, Dot<D>(p, p), hn::Mul(delta, hn::MulAdd(s.sag, s.sag, s.y2)));
+    return hn::NegMulAdd(hn::Set(d, T(0.5)), curved, AxisDot(p));
+  }
+  // N; k = delta y / w.
+  HWY_INLINE Vec3<D> NormalAt(const Vec3<D>& p, V k) const {
+    if constexpr (kUpright) {
+      return {hn::NegMulAdd(c, p.x, hn::Neg(hn::Mul(k, g.x))),
+              hn::NegMulAdd(c, p.y, hn::Neg(hn::Mul(k, g.y))),
+              hn::NegMulAdd(c, p.z, hn::Set(d, 1))};
+    } else {
+      return {hn::NegMulAdd(c, p.x, hn::NegMulAdd(k, g.x, a.x)),
+              hn::NegMulAdd(c, p.y, hn::NegMulAdd(k, g.y, a.y)),
+              hn::NegMulAdd(c, p.z, hn::NegMulAdd(k, g.z, a.z))};
+    }
+  }
+  HWY_INLINE Vec3<D> NormalAt(const Vec3<D>& p, const Circle& s) const {
+    return NormalAt(p, hn::Mul(hn::Mul(delta, s.y), s.inverse));
+  }
+
+  static constexpr bool kDouble = sizeof(T) == 8;
+  static constexpr T kResidual_mm = kDouble ? T(2e-13) : T(2e-5);
+
+  HWY_INLINE FaceHit<D> IntersectTorus(const Vec3<D>& p, const Vec3<D>& dir) const {
+    // The last step of the fast path leaves an error of its square over a radius, and of the cube
+    // of the circle's defect; lanes above these go the slow way.
+    constexpr T kLastStep_mm = kDouble ? T(1e-6) : T(5e-3);
+    constexpr T kLastDefect = kDouble ? T(5e-6) : T(5e-3);
+    const V zero = hn::Zero(d), one = hn::Set(d, 1), two = hn::Set(d, 2);
+
+    // Start: the quadric that G becomes when the generator's sag is frozen where the ray starts.
+    const V yd = GeneratorDot(dir), pa = AxisDot(p);
+    Circle circle = CircleAt(p);
+    const V parabola = hn::Mul(hn::Mul(hn::Set(d, T(0.5)), generator), circle.y2);
+    const V sag = hn::MulAdd(parabola, hn::Mul(hn::Set(d, T(0.25)), hn::Mul(generator2, circle.y2)),
+                             parabola);
     const V quadratic = hn::MulAdd(delta, hn::Mul(yd, yd), c);
-    const V b = hn::NegMulAdd(c, Dot<D>(p, dir), hn::NegMulAdd(delta, hn::Mul(y0, yd), da));
-    const V h = hn::MulSub(delta, hn::MulAdd(sag, sag, y2),
+    const V b =
+        hn::NegMulAdd(c, Dot<D>(p, dir), hn::NegMulAdd(delta, hn::Mul(circle.y, yd), AxisDot(dir)));
+    const V h = hn::MulSub(delta, hn::MulAdd(sag, sag, circle.y2),
                            hn::NegMulAdd(c, Dot<D>(p, p), hn::Add(pa, pa)));
-    V root;
-    hn::Mask<D> started;
-    V t = StableRoot(d, quadratic, b, h, sense, &root, &started);
-    // Where the quadric is missed the torus may still be hit: start at the vertex plane's foot.
-    t = hn::IfThenElse(hn::Lt(hn::Abs(t), hn::Set(d, T(kFarthest_mm))), t, zero);
+    V root, defect;
+    M unused;
+    V t = StableRoot(d, quadratic, b, h, sense, &root, &unused);
 
-    Jet jet;
-    for (int i = 0; i < kSteps; ++i) {
-      jet = JetAt(Along<D>(p, t, dir));
-      t = hn::Sub(t, hn::Div(jet.value, Dot<D>(jet.n, dir)));
+    // Newton; its slope's reciprocal by a Newton step from the quadric's.
+    auto point = Along<D>(p, t, dir);
+    circle = CircleNear(circle, point, &defect);
+    auto n = NormalAt(point, circle);
+    V slope = hn::Div(one, root);
+    slope = hn::Mul(slope, hn::NegMulAdd(Dot<D>(n, dir), slope, two));
+    V step = hn::Mul(ValueAt(point, circle), slope);
+    if constexpr (kDouble) {
+      t = hn::Sub(t, step);
+      point = Along<D>(p, t, dir);
+      circle = CircleNear(circle, point, &defect);
+      n = NormalAt(point, circle);
+      slope = hn::Mul(slope, hn::NegMulAdd(Dot<D>(n, dir), slope, two));
+      step = hn::Mul(ValueAt(point, circle), slope);
     }
-    const auto tolerance = hn::Set(d, kResidual_mm);
-    hn::Mask<D> converged;
-    for (int i = 0;; ++i) {
-      hit->point = Along<D>(p, t, dir);
-      jet = JetAt(hit->point);
-      converged = hn::Le(hn::Abs(jet.value), tolerance);
-      if (HWY_LIKELY(hn::AllTrue(d, converged)) || i == kMoreSteps) break;
-      t = hn::Sub(t,
-                  hn::IfThenElseZero(hn::Not(converged), hn::Div(jet.value, Dot<D>(jet.n, dir))));
+    const M fast = hn::And(hn::Le(hn::Abs(step), hn::Set(d, kLastStep_mm)),
+                           hn::Le(hn::Abs(defect), hn::Set(d, kLastDefect)));
+    if (HWY_UNLIKELY(!hn::AllTrue(d, fast))) return IntersectTorusSlowly(p, dir, t);
+
+    FaceHit<D> hit;
+    hit.distance = hn::Sub(t, step);
+    const V back = hn::Neg(step);
+    hit.point = Along<D>(point, back, dir);
+    // N is carried over the last step by its derivative.
+    const V bend = hn::Mul(hn::Mul(delta, yd),
+                           hn::Mul(circle.inverse, hn::Mul(circle.inverse, circle.inverse)));
+    const V kc = hn::Mul(step, c), kg = hn::Mul(step, bend);
+    n = Along<D>(n, kc, dir);
+    if constexpr (kUpright) {
+      n.x = hn::MulAdd(kg, g.x, n.x);
+      n.y = hn::MulAdd(kg, g.y, n.y);
+    } else {
+      n = Along<D>(n, kg, g);
     }
-    const V inverse = hn::Div(one, hn::Sqrt(Dot<D>(jet.n, jet.n)));
-    hit->normal = {hn::Mul(jet.n.x, inverse), hn::Mul(jet.n.y, inverse), hn::Mul(jet.n.z, inverse)};
+    const V scale = hn::NegMulAdd(c, circle.sag, one);
+    Normalize(n, circle, scale, dir, &hit);
+    hit.ok = hn::And(hn::Gt(scale, zero), hn::Gt(hn::Mul(hit.cosine, sense), zero));
+    return hit;
+  }
+
+  // Unit normal and cosine. On the torus |N| = (1 - c s) / w; a Newton step takes out the rest.
+  HWY_INLINE void Normalize(const Vec3<D>& n, const Circle& circle, V scale, const Vec3<D>& dir,
+                            FaceHit<D>* hit) const {
+    V k = hn::Div(hn::Mul(circle.w2, circle.inverse), scale);
+    k = hn::Mul(k, hn::NegMulAdd(hn::Mul(hn::Set(d, T(0.5)), Dot<D>(n, n)), hn::Mul(k, k),
+                                 hn::Set(d, T(1.5))));
+    hit->normal = {hn::Mul(n.x, k), hn::Mul(n.y, k), hn::Mul(n.z, k)};
     hit->cosine = Dot<D>(hit->normal, dir);
-    hit->distance = t;
-    const auto on_sheet = hn::And(hn::Gt(jet.w2, zero), hn::Gt(jet.scale, zero));
-    const auto with_sense = hn::Gt(hn::Mul(hit->cosine, sense), zero);
-    hit->ok = hn::And(converged, hn::And(on_sheet, with_sense));
+  }
+
+  // Newton from `t` in every lane until it settles.
+  HWY_NOINLINE FaceHit<D> IntersectTorusSlowly(const Vec3<D>& p, const Vec3<D>& dir, V t) const {
+    constexpr int kMaxSteps = 16;
+    const V zero = hn::Zero(d);
+    // A start that is no number at all: begin where the ray is.
+    t = hn::IfThenElse(hn::Lt(hn::Abs(t), hn::Set(d, T(kFarthest_mm))), t, zero);
+    FaceHit<D> hit;
+    Circle circle;
+    Vec3<D> n;
+    M converged;
+    for (int i = 0;; ++i) {
+      hit.point = Along<D>(p, t, dir);
+      circle = CircleAt(hit.point);
+      n = NormalAt(hit.point, circle);
+      const V value = ValueAt(hit.point, circle);
+      converged = hn::Le(hn::Abs(value), hn::Set(d, kResidual_mm));
+      if (hn::AllTrue(d, converged) || i == kMaxSteps) break;
+      // Lanes that have settled move by their last rounding only.
+      t = hn::Sub(t, hn::Div(value, Dot<D>(n, dir)));
+    }
+    hit.distance = t;
+    const V scale = hn::NegMulAdd(c, circle.sag, hn::Set(d, 1));
+    Normalize(n, circle, scale, dir, &hit);
+    const M on_sheet = hn::And(hn::Gt(circle.w2, zero), hn::Gt(scale, zero));
+    hit.ok = hn::And(converged, hn::And(on_sheet, hn::Gt(hn::Mul(hit.cosine, sense), zero)));
+    return hit;
   }
 };
 
