@@ -23,17 +23,50 @@ enum class ShadowMode {
   kBaked,  // the same integral from visibility baked per point of the face
 };
 
+// What a ray inside the glass finds at the edge wall.
+enum class EdgeFinish {
+  kPolished,  // a smooth dielectric: internal reflection goes on
+  kGround,    // a matt, whitish wall lit by the mean of the environment
+};
+
 struct CompositorOptions {
   bool refraction = true;
   bool reflection = true;  // Fresnel: front and back surface, internal bounces
   ShadowMode shadow = ShadowMode::kBaked;
   bool shadow_sees_face = true;  // S_noGlasses with the face as an occluder (section V-B) or not
-  int shadow_rays = 160;         // a pixel in paper mode (4 x 40 strata), a vertex when baked
+  int shadow_rays = 160;         // a pixel in paper mode (4 x 40 strata)
+  int shadow_directions = 1024;  // of the sphere, baked; a multiple of 16
+  double shadow_spacing_mm = 1;  // between baked points where frame and skin are close
+  double skin_albedo = 0.5;      // of light that the face returns to itself; 0: as the paper
   int samples_per_side = 2;      // 2: the paper's 2x2 samples a pixel
   bool adaptive = false;         // one sample where nothing changes
   int max_internal_bounces = 4;
+  EdgeFinish edge = EdgeFinish::kGround;
   bool fade_temples = true;             // the paper's feathering toward the ears
   double background_distance_mm = 800;  // of what lies behind the head, from the head's origin
+  // Camera z of the background plane; given, it goes before background_distance_mm.
+  std::optional<double> background_depth_mm;
+  // Turns camera directions into those of the environment; the default has y up, z to the camera.
+  Eigen::Matrix3d world_from_camera = Eigen::Vector3d(1, -1, -1).asDiagonal();
+  double environment_scale = 1;  // radiance of the input image's 1.0 in units of the environment
+};
+
+// What one call of Render met.
+struct RenderCounts {
+  long lens_pixels = 0;      // pixels with at least one sample on a lens
+  long frame_pixels = 0;     // ... on the frame
+  long shadowed_pixels = 0;  // seen directly, with a ratio below 1
+  long filled_samples = 0;   // rays that ended where the camera never saw
+};
+
+enum class HitCode {
+  kBackground = 0,
+  kRightLensToHead = 1,
+  kLeftLensToHead = 2,
+  kLensToBackground = 3,
+  kFrame = 4,  // directly or through a lens
+  kHead = 5,   // directly
+  kEdge = 6,   // edge wall or total reflection: not followed further
 };
 
 // The scene in head space, built once a clip; the camera moves.
@@ -50,10 +83,19 @@ class Compositor {
   // Moves the face's vertices (same topology), for a frame with its own expression.
   void UpdateFace(const std::vector<Eigen::Vector3f>& vertices);
 
-  // input and the result: linear light, the camera's size. world_from_camera turns directions for
-  // the environment (the default world is the camera's, with y up and z toward the camera).
+  // input and the result: linear light, the camera's size. Pixels where nothing is inserted are
+  // the input's, bit for bit; the result does not depend on the number of threads.
   ImageRgbF Render(const ImageRgbF& input, const Camera& camera,
-                   const Eigen::Isometry3d& camera_from_head) const;
+                   const Eigen::Isometry3d& camera_from_head, RenderCounts* counts = nullptr) const;
+
+  // What the ray through every pixel's centre reaches: R, G, B the head-space point in mm where it
+  // met the head through a lens by refraction at both surfaces, 0 elsewhere; A a HitCode.
+  ImageRgbaF HitMap(const Camera& camera, const Eigen::Isometry3d& camera_from_head) const;
+
+  // The environment_scale that gives a grey face (albedo 0.4) the mean radiance it has in `input`.
+  double MatchExposure(const ImageRgbF& input, const Camera& camera,
+                       const Eigen::Isometry3d& camera_from_head) const;
+  void SetEnvironmentScale(double scale);
 
  private:
   struct Scene;

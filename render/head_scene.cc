@@ -1,0 +1,141 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "render/head_scene.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+namespace lorgnette {
+namespace {
+
+constexpr int kLightDirections = 1024;
+constexpr int kFrameDirections = 256;
+// The paper's feathering: share of the way from the front to the ear.
+constexpr double kFadeStart = 0.55, kFadeEnd = 0.97;
+
+FrameSurface JoinParts(const Eyewear& eyewear, const Environment& environment) {
+  FrameSurface out;
+  out.frame_from_head = eyewear.head_from_frame.inverse();
+  for (const FramePart& part : eyewear.frame.parts) {
+    if (part.kind == FramePartKind::kDemoLens || part.mesh.empty()) continue;
+    TriangleMesh mesh = part.mesh;
+    mesh.uvs.clear();
+    if (mesh.normals.size() != mesh.positions.size()) ComputeVertexNormals(mesh);
+    for (Eigen::Vector3d& p : mesh.positions) p = eyewear.head_from_frame * p;
+    for (Eigen::Vector3d& n : mesh.normals) n = eyewear.head_from_frame.rotation() * n;
+    out.material_of.insert(out.material_of.end(), mesh.triangles.size(),
+                           std::uint16_t(out.materials.size()));
+    out.materials.push_back(part.material);
+    out.fades.push_back(part.kind == FramePartKind::kTemple);
+    out.gloss.push_back(BlurredEnvironment::ForPhong(environment, part.material.shininess));
+    Append(out.mesh, mesh);
+  }
+  double ear_z = 0.5 * (eyewear.frame.ear_point_right.z() + eyewear.frame.ear_point_left.z());
+  if (ear_z >= 0) ear_z = -0.7 * eyewear.frame.temple_length_mm;
+  out.fade_start_z = kFadeStart * ear_z;
+  out.fade_end_z = kFadeEnd * ear_z;
+  return out;
+}
+
+// Greatest distance from the contour, inward, of a point of the frame that lies inside the glass.
+double RimDepth(const LensSolid& lens, const TriangleMesh& frame) {
+  double depth = 0;
+  for (const Eigen::Vector3i& t : frame.triangles) {
+    for (int k = 0; k < 3; ++k) {
+      // Corners and the middles of the sides: triangles of a rim are small against its radius.
+      const Eigen::Vector3d& a = frame.positions[std::size_t(t[k])];
+      const Eigen::Vector3d& b = frame.positions[std::size_t(t[(k + 1) % 3])];
+      for (const Eigen::Vector3d& p : {a, Eigen::Vector3d(0.5 * (a + b))}) {
+        const Eigen::Vector3d q = lens.lens_from_head() * p;
+        if (q.z() < lens.low().z() - 0.5 || q.z() > lens.high().z() + 0.5) continue;
+        depth = std::max(depth, lens.contour().Clearance(q.x(), q.y()));
+      }
+    }
+  }
+  constexpr double kMargin_mm = 1.0;  // Clearance is up to one grid cell short
+  return depth + kMargin_mm;
+}
+
+}  // namespace
+
+Result<HeadScene> HeadScene::Build(const Eyewear& eyewear, const TriangleMesh& face,
+                                   const TriangleMesh& occluder, const Environment& environment,
+                                   const CompositorOptions& options) {
+  if (face.empty()) return Failure("the face mesh has no triangles");
+  for (const TriangleMesh* mesh : {&face, &occluder}) {
+    for (const Eigen::Vector3i& t : mesh->triangles) {
+      if (t.minCoeff() < 0 || t.maxCoeff() >= int(mesh->positions.size())) {
+        return Failure(fmt::format("a triangle of the face names vertex {}, want 0..{}",
+                                   t.maxCoeff(), mesh->positions.size() - 1));
+      }
+    }
+  }
+  if (options.samples_per_side < 1 || options.samples_per_side > 16) {
+    return UsageError(fmt::format("samples a side: got {}, want 1..16", options.samples_per_side));
+  }
+  if (options.shadow_directions < 16 || options.shadow_directions % 16 != 0) {
+    return UsageError(
+        fmt::format("shadow directions: got {}, want a multiple of 16", options.shadow_directions));
+  }
+  TriangleMesh smooth_face = face;
+  if (smooth_face.normals.size() != smooth_face.positions.size()) ComputeVertexNormals(smooth_face);
+  FrameSurface frame = JoinParts(eyewear, environment);
+  LG_ASSIGN(EmbreeScene scene, EmbreeScene::Build(smooth_face, occluder, frame.mesh));
+
+  std::vector<LensSolid> lenses;
+  std::vector<double> rim_depth;
+  for (const CutLens* cut : {&eyewear.right, &eyewear.left}) {
+    if (cut->contour_mm.size() < 3) {
+      return Failure(
+          fmt::format("a lens contour has {} points, want 3 or more", cut->contour_mm.size()));
+    }
+    lenses.emplace_back(cut->lens.lens(), cut->contour_mm,
+                        eyewear.head_from_frame * cut->frame_from_lens);
+    rim_depth.push_back(RimDepth(lenses.back(), frame.mesh));
+  }
+
+  std::vector<SurfacePoint> frame_points;
+  for (std::size_t i = 0; i < frame.mesh.positions.size(); ++i) {
+    frame_points.push_back(
+        {frame.mesh.positions[i].cast<float>(), frame.mesh.normals[i].cast<float>()});
+  }
+  BakedIrradiance frame_light = BakedIrradiance::Bake(scene, frame_points, kFrameDirections);
+
+  const int directions =
+      options.shadow == ShadowMode::kBaked ? options.shadow_directions : kLightDirections;
+  std::optional<BakedShadow> baked_shadow;
+  std::optional<PaperShadow> paper_shadow;
+  if (options.shadow == ShadowMode::kBaked) {
+    ShadowOptions shadow;
+    shadow.sees_face = options.shadow_sees_face;
+    shadow.interreflection = float(options.skin_albedo);
+    shadow.directions = directions;
+    shadow.spacing_near_mm = options.shadow_spacing_mm;
+    shadow.spacing_far_mm = 3 * options.shadow_spacing_mm;
+    baked_shadow = BakedShadow::Bake(scene, smooth_face, frame.mesh, shadow);
+  } else if (options.shadow == ShadowMode::kPaper) {
+    paper_shadow.emplace(options.shadow_rays, options.shadow_sees_face, float(options.skin_albedo));
+  }
+
+  std::vector<Eigen::Vector3f> vertices, normals;
+  for (const Eigen::Vector3d& p : smooth_face.positions) vertices.push_back(p.cast<float>());
+  for (const Eigen::Vector3d& n : smooth_face.normals) normals.push_back(n.cast<float>());
+  return HeadScene{options,
+                   std::move(scene),
+                   std::move(vertices),
+                   std::move(normals),
+                   smooth_face.triangles,
+                   std::move(frame),
+                   std::move(lenses),
+                   std::move(rim_depth),
+                   environment,
+                   environment.Mean(),
+                   SphereDirections(directions),
+                   BlurredEnvironment::ForCells(environment, directions),
+                   std::move(frame_light),
+                   std::move(baked_shadow),
+                   std::move(paper_shadow)};
+}
+
+}  // namespace lorgnette

@@ -1,0 +1,56 @@
+// SPDX-License-Identifier: Apache-2.0
+// Everything about the wearer and the eyewear that stays the same while the camera moves: meshes
+// in head space, glass, light baked for the points of frame and face. Internal to render/.
+#pragma once
+
+#include <Eigen/Geometry>
+#include <optional>
+#include <vector>
+
+#include "geometry/eyewear.h"
+#include "render/compositor.h"
+#include "render/embree_scene.h"
+#include "render/environment.h"
+#include "render/lens_solid.h"
+#include "render/lighting.h"
+#include "render/paper_shadow.h"
+
+namespace lorgnette {
+
+// The frame's parts as one mesh, demo lenses left out.
+struct FrameSurface {
+  TriangleMesh mesh;                       // head space, with normals
+  std::vector<std::uint16_t> material_of;  // one a triangle
+  std::vector<FrameMaterial> materials;    // one a part
+  std::vector<bool> fades;                 // one a part: a temple
+  std::vector<BlurredEnvironment> gloss;   // one a part: the environment under its Phong lobe
+  Eigen::Isometry3d frame_from_head = Eigen::Isometry3d::Identity();
+  double fade_start_z = 0, fade_end_z = 0;  // frame coordinates: opaque before, gone after
+};
+
+struct HeadScene {
+  static Result<HeadScene> Build(const Eyewear& eyewear, const TriangleMesh& face,
+                                 const TriangleMesh& occluder, const Environment& environment,
+                                 const CompositorOptions& options);
+
+  CompositorOptions options;
+  EmbreeScene scene;
+  std::vector<Eigen::Vector3f> face_vertices;
+  std::vector<Eigen::Vector3f> face_normals;
+  std::vector<Eigen::Vector3i> face_triangles;
+  FrameSurface frame;
+  std::vector<LensSolid> lenses;  // right, left
+  // Depth to which the frame reaches into the glass from the contour, mm; rays that stay farther
+  // from the wall need no test against the frame.
+  std::vector<double> rim_depth_mm;
+
+  Environment environment;
+  Eigen::Vector3f environment_mean{0, 0, 0};
+  std::vector<Eigen::Vector3f> directions;  // of the baked light
+  BlurredEnvironment cells;
+  BakedIrradiance frame_light;
+  std::optional<BakedShadow> baked_shadow;
+  std::optional<PaperShadow> paper_shadow;
+};
+
+}  // namespace lorgnette

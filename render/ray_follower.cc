@@ -1,0 +1,229 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "render/ray_follower.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "base/units.h"
+#include "optics/trace.h"
+
+namespace lorgnette {
+namespace {
+
+// A branch that carries less of its pixel is not followed; its share goes to the other branch.
+constexpr double kLeastWeight = 1.5e-3;
+// A ground edge scatters what reaches it; about half of a matt wall's light comes back.
+constexpr float kGroundEdgeAlbedo = 0.5f;
+constexpr float kInfinity = std::numeric_limits<float>::infinity();
+
+Ray Transformed(const Eigen::Isometry3d& to_from, const Ray& ray) {
+  return {to_from * ray.origin, to_from.linear() * ray.direction};
+}
+
+float SmoothStep(double x, double from, double to) {
+  const double s = std::clamp((x - from) / (to - from), 0.0, 1.0);
+  return float(s * s * (3 - 2 * s));
+}
+
+double BackgroundDepth(const CompositorOptions& options,
+                       const Eigen::Isometry3d& camera_from_head) {
+  return options.background_depth_mm.value_or(camera_from_head.translation().z() +
+                                              options.background_distance_mm);
+}
+
+}  // namespace
+
+RayFollower::RayFollower(const HeadScene& head, const ImageRgbF& input, const Camera& camera,
+                         const Eigen::Isometry3d& camera_from_head)
+    : head_(head),
+      world_from_head_(
+          (head.options.world_from_camera * camera_from_head.rotation()).cast<float>()),
+      picture_(input, camera, camera_from_head, head.scene, head.face_vertices, head.face_triangles,
+               BackgroundDepth(head.options, camera_from_head)) {
+  const HeadLight light =
+      LightAt(head.directions, head.cells, world_from_head_, float(head.options.environment_scale));
+  if (head.baked_shadow) ratios_ = head.baked_shadow->Relight(light);
+  frame_irradiance_ = head.frame_light.Relight(light, picture_.face_mean());
+}
+
+Eigen::Vector3f RayFollower::EnvironmentLight(const Eigen::Vector3f& direction) const {
+  return float(head_.options.environment_scale) *
+         head_.environment.Radiance(world_from_head_ * direction);
+}
+
+float RayFollower::FrameOpacity(const SceneHit& hit, const Eigen::Vector3f& point) const {
+  if (!head_.options.fade_temples || !head_.frame.fades[head_.frame.material_of[hit.triangle]]) {
+    return 1;
+  }
+  const double z = (head_.frame.frame_from_head * point.cast<double>()).z();
+  return 1 - SmoothStep(-z, -head_.frame.fade_start_z, -head_.frame.fade_end_z);
+}
+
+Eigen::Vector3f RayFollower::Frame(const SceneHit& hit, const Eigen::Vector3f& point,
+                                   const Eigen::Vector3f& direction) const {
+  const FrameSurface& frame = head_.frame;
+  const std::uint16_t part = frame.material_of[hit.triangle];
+  const FrameMaterial& material = frame.materials[part];
+  const Eigen::Vector3i& t = frame.mesh.triangles[hit.triangle];
+  const float w[3] = {1 - hit.u - hit.v, hit.u, hit.v};
+  Eigen::Vector3f irradiance = Eigen::Vector3f::Zero(), normal = Eigen::Vector3f::Zero();
+  for (int k = 0; k < 3; ++k) {
+    irradiance += w[k] * frame_irradiance_[std::size_t(t[k])];
+    normal += w[k] * frame.mesh.normals[std::size_t(t[k])].cast<float>();
+  }
+  Eigen::Vector3f colour = float(1 / kPi) * material.diffuse.cwiseProduct(irradiance);
+  if (material.specular.isZero()) return colour;
+  normal.normalize();
+  const float cosine = std::min(std::abs(normal.dot(direction)), 1.0f);
+  const Eigen::Vector3f mirrored = direction - 2 * normal.dot(direction) * normal;
+  constexpr float kLift_mm = 0.1f;
+  if (mirrored.dot(normal) * normal.dot(direction) < 0 &&
+      !head_.scene.Occluded(RaySet::kAll,
+                            point - std::copysign(kLift_mm, normal.dot(direction)) * normal,
+                            mirrored, 0, kInfinity)) {
+    // Schlick's rise of reflectance toward grazing.
+    const float rise = std::pow(1 - cosine, 5.0f);
+    const Eigen::Vector3f strength =
+        material.specular + rise * (Eigen::Vector3f::Ones() - material.specular);
+    colour += float(head_.options.environment_scale) *
+              strength.cwiseProduct(frame.gloss[part].Radiance(world_from_head_ * mirrored));
+  }
+  return colour;
+}
+
+Eigen::Vector3f RayFollower::FaceRatio(const SceneHit& hit, const Eigen::Vector3f& point,
+                                       PixelState& pixel) const {
+  if (hit.object != SceneObject::kFace) return Eigen::Vector3f::Ones();
+  if (head_.baked_shadow) return head_.baked_shadow->Ratio(ratios_, hit.triangle, hit.u, hit.v);
+  if (!head_.paper_shadow) return Eigen::Vector3f::Ones();
+  if (!pixel.face_ratio) {
+    const Eigen::Vector3i& t = head_.face_triangles[hit.triangle];
+    const Eigen::Vector3f normal = ((1 - hit.u - hit.v) * head_.face_normals[std::size_t(t[0])] +
+                                    hit.u * head_.face_normals[std::size_t(t[1])] +
+                                    hit.v * head_.face_normals[std::size_t(t[2])])
+                                       .normalized();
+    pixel.face_ratio = head_.paper_shadow->Ratio(head_.scene, head_.environment, world_from_head_,
+                                                 {point, normal}, pixel.seed);
+  }
+  return *pixel.face_ratio;
+}
+
+Eigen::Vector3f RayFollower::Head(const SceneHit& hit, const Eigen::Vector3f& point,
+                                  PixelState& pixel) const {
+  return picture_.Head(hit, point, pixel.filled).cwiseProduct(FaceRatio(hit, point, pixel));
+}
+
+Eigen::Vector3f RayFollower::Miss(const Eigen::Vector3f& origin, const Eigen::Vector3f& direction,
+                                  bool transmitted, PixelState& pixel) const {
+  Eigen::Vector3f colour;
+  if (transmitted && picture_.Background(origin, direction, colour, pixel.filled)) return colour;
+  return EnvironmentLight(direction);
+}
+
+Eigen::Vector3f RayFollower::Outside(const Ray& ray, double weight, int bounces, bool transmitted,
+                                     PixelState& pixel) const {
+  const Eigen::Vector3f origin = ray.origin.cast<float>();
+  const Eigen::Vector3f direction = ray.direction.cast<float>();
+  const SceneHit hit = head_.scene.Intersect(RaySet::kAll, origin, direction, 0, kInfinity);
+  if (bounces <= head_.options.max_internal_bounces) {
+    std::optional<SolidHit> nearest;
+    std::size_t nearest_lens = 0;
+    Ray nearest_ray;
+    for (std::size_t i = 0; i < head_.lenses.size(); ++i) {
+      const Ray local = Transformed(head_.lenses[i].lens_from_head(), ray);
+      const auto entry = head_.lenses[i].Enter(local);
+      if (entry && (!nearest || entry->distance < nearest->distance)) {
+        nearest = entry;
+        nearest_lens = i;
+        nearest_ray = local;
+      }
+    }
+    if (nearest && (!hit.hit() || nearest->distance < double(hit.distance))) {
+      return EnterGlass(nearest_lens, nearest_ray, *nearest, weight, bounces + 1, pixel);
+    }
+  }
+  if (!hit.hit()) return Miss(origin, direction, transmitted, pixel);
+  const Eigen::Vector3f point = origin + hit.distance * direction;
+  if (hit.object != SceneObject::kFrame) return Head(hit, point, pixel);
+  const float opacity = FrameOpacity(hit, point);
+  Eigen::Vector3f colour = opacity * Frame(hit, point, direction);
+  if (opacity < 1) {
+    const SceneHit behind = head_.scene.Intersect(RaySet::kHead, point, direction, 0, kInfinity);
+    colour +=
+        (1 - opacity) * (behind.hit() ? Head(behind, point + behind.distance * direction, pixel)
+                                      : Miss(point, direction, transmitted, pixel));
+  }
+  return colour;
+}
+
+Eigen::Vector3f RayFollower::EnterGlass(std::size_t lens, const Ray& ray, const SolidHit& hit,
+                                        double weight, int bounces, PixelState& pixel) const {
+  const LensSolid& solid = head_.lenses[lens];
+  const double index = solid.lens().medium.index_d;
+  double reflected =
+      head_.options.reflection
+          ? FresnelReflectance(std::min(-hit.normal.dot(ray.direction), 1.0), 1 / index)
+          : 0;
+  if (weight * reflected < kLeastWeight) reflected = 0;
+  Eigen::Vector3f colour = Eigen::Vector3f::Zero();
+  if (reflected > 0) {
+    const Ray mirrored{hit.point, Reflect(ray.direction, hit.normal)};
+    colour += float(reflected) * Outside(Transformed(solid.head_from_lens(), mirrored),
+                                         weight * reflected, bounces, false, pixel);
+  }
+  Eigen::Vector3d direction = ray.direction;
+  if (head_.options.refraction) {
+    direction = Refract(ray.direction, hit.normal, 1 / index)->normalized();
+  }
+  return colour + float(1 - reflected) * Inside(lens, {hit.point, direction},
+                                                weight * (1 - reflected), bounces, pixel);
+}
+
+Eigen::Vector3f RayFollower::Inside(std::size_t lens, const Ray& ray, double weight, int bounces,
+                                    PixelState& pixel) const {
+  const LensSolid& solid = head_.lenses[lens];
+  const auto hit = solid.Leave(ray);
+  if (!hit) return Eigen::Vector3f::Zero();
+  const ContourIndex& contour = solid.contour();
+  const double depth = head_.rim_depth_mm[lens];
+  if (contour.Clearance(ray.origin.x(), ray.origin.y()) < depth ||
+      contour.Clearance(hit->point.x(), hit->point.y()) < depth) {
+    const Ray in_head = Transformed(solid.head_from_lens(), ray);
+    const Eigen::Vector3f origin = in_head.origin.cast<float>();
+    const Eigen::Vector3f direction = in_head.direction.cast<float>();
+    const SceneHit rim =
+        head_.scene.Intersect(RaySet::kFrame, origin, direction, 0, float(hit->distance));
+    if (rim.hit()) return Frame(rim, origin + rim.distance * direction, direction);
+  }
+  if (hit->face == LensFace::kWall && head_.options.edge == EdgeFinish::kGround) {
+    return kGroundEdgeAlbedo * float(head_.options.environment_scale) * head_.environment_mean;
+  }
+  const double index = solid.lens().medium.index_d;
+  const double cosine = std::min(hit->normal.dot(ray.direction), 1.0);
+  std::optional<Eigen::Vector3d> out = ray.direction;
+  double reflected;
+  if (head_.options.refraction) {
+    out = Refract(ray.direction, hit->normal, index);
+    reflected = out ? FresnelReflectance(cosine, index) : 1;
+    if (!head_.options.reflection && out) reflected = 0;
+  } else {
+    reflected = head_.options.reflection ? FresnelReflectance(cosine, 1 / index) : 0;
+  }
+  const bool follow =
+      bounces <= head_.options.max_internal_bounces && weight * reflected >= kLeastWeight;
+  if (!follow && out) reflected = 0;
+  Eigen::Vector3f colour = Eigen::Vector3f::Zero();
+  if (follow && reflected > 0) {
+    colour += float(reflected) * Inside(lens, {hit->point, Reflect(ray.direction, hit->normal)},
+                                        weight * reflected, bounces + 1, pixel);
+  }
+  if (out) {
+    const Ray leaving = Transformed(solid.head_from_lens(), {hit->point, out->normalized()});
+    colour +=
+        float(1 - reflected) * Outside(leaving, weight * (1 - reflected), bounces, true, pixel);
+  }
+  return colour;
+}
+
+}  // namespace lorgnette

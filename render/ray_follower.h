@@ -1,0 +1,62 @@
+// SPDX-License-Identifier: Apache-2.0
+// The colour at the end of a ray in one frame: through glass, off glass, onto head, frame,
+// background and environment (Whitted 1980). Internal to render/; thread safe.
+#pragma once
+
+#include <Eigen/Geometry>
+#include <vector>
+
+#include "render/head_scene.h"
+#include "render/picture_view.h"
+
+namespace lorgnette {
+
+// What one pixel's rays share.
+struct PixelState {
+  std::uint32_t seed = 0;  // of the paper's strata
+  long filled = 0;
+  // Paper mode shades one point a pixel; nullopt until a ray of the pixel met the face.
+  std::optional<Eigen::Vector3f> face_ratio;
+};
+
+class RayFollower {
+ public:
+  RayFollower(const HeadScene& head, const ImageRgbF& input, const Camera& camera,
+              const Eigen::Isometry3d& camera_from_head);
+
+  const PictureView& picture() const { return picture_; }
+
+  // Radiance along a ray (head space, unit direction) that starts outside all glass.
+  //   weight       share of the pixel, for leaving out what cannot be seen
+  //   transmitted  the ray left a lens by refraction: where it misses the head it sees the
+  //                background; reflected rays see the environment
+  Eigen::Vector3f Outside(const Ray& ray, double weight, int bounces, bool transmitted,
+                          PixelState& pixel) const;
+  // The same from the point where a ray enters a lens (lens frame).
+  Eigen::Vector3f EnterGlass(std::size_t lens, const Ray& ray, const SolidHit& hit, double weight,
+                             int bounces, PixelState& pixel) const;
+
+  Eigen::Vector3f EnvironmentLight(const Eigen::Vector3f& direction) const;
+  // Frame radiance toward -direction, and its opacity (the temples' feathering).
+  Eigen::Vector3f Frame(const SceneHit& hit, const Eigen::Vector3f& point,
+                        const Eigen::Vector3f& direction) const;
+  float FrameOpacity(const SceneHit& hit, const Eigen::Vector3f& point) const;
+  // Equation (2)'s factor at a point of the face.
+  Eigen::Vector3f FaceRatio(const SceneHit& hit, const Eigen::Vector3f& point,
+                            PixelState& pixel) const;
+
+ private:
+  Eigen::Vector3f Inside(std::size_t lens, const Ray& ray, double weight, int bounces,
+                         PixelState& pixel) const;
+  Eigen::Vector3f Head(const SceneHit& hit, const Eigen::Vector3f& point, PixelState& pixel) const;
+  Eigen::Vector3f Miss(const Eigen::Vector3f& origin, const Eigen::Vector3f& direction,
+                       bool transmitted, PixelState& pixel) const;
+
+  const HeadScene& head_;
+  Eigen::Matrix3f world_from_head_;
+  PictureView picture_;
+  std::vector<Eigen::Vector3f> ratios_;            // one a baked point
+  std::vector<Eigen::Vector3f> frame_irradiance_;  // one a vertex
+};
+
+}  // namespace lorgnette
