@@ -78,8 +78,8 @@ TriangleMesh BridgeMesh(const RimShape& rim, const RimParameters& rim_parameters
   BarShape shape;
   shape.section = Superellipse(40, 3.0);
   shape.rings = 48;
-  shape.dome_rings = 3;
-  shape.dome_start = shape.dome_end = 0.012;
+  shape.dome_rings = 8;
+  shape.dome_start = shape.dome_end = 0.03;
   return SweepBar(map, shape);
 }
 
@@ -104,8 +104,8 @@ Pad PadMesh(const RimShape& rim, const RimParameters& rim_parameters, const PadP
     if (pad.arm_mm > 0) return cushion;
     const double s = Mix(s_bottom, s_top, v);
     const Eigen::Vector3d root =
-        rim.Point(s, 0.5 * rim.Width(s), q * 0.3 * rim_parameters.depth_mm);
-    return root + Smoothstep(0.85 + w) * (cushion - root);
+        rim.Point(s, 0.2 * rim.Width(s), (0.3 * q - 0.2) * rim_parameters.depth_mm);
+    return root + 0.5 * (1 + w) * (cushion - root);
   };
   BarShape shape;
   shape.section = Superellipse(28, 2.4);
@@ -119,11 +119,12 @@ Pad PadMesh(const RimShape& rim, const RimParameters& rim_parameters, const PadP
   }
 
   if (pad.arm_mm > 0) {
-    const double s = rim.ParameterAtAngle(172);
-    const Eigen::Vector3d start = rim.Point(s, 0.4 * rim.Width(s), -0.4 * rim_parameters.depth_mm);
+    const double s = rim.ParameterAtAngle(165);
+    const Eigen::Vector3d start = rim.Point(s, 0.4 * rim.Width(s), -0.35 * rim_parameters.depth_mm);
     const Eigen::Vector3d end = centre - face * (0.2 * pad.thickness_mm);
-    const Eigen::Vector3d path[4] = {start, start + Eigen::Vector3d(0.5, 1.5, -4.5),
-                                     end + Eigen::Vector3d(4.0, 1.0, -2.5), end};
+    const double d = (end - start).norm();
+    const Eigen::Vector3d path[4] = {start, start + d * Eigen::Vector3d(0.1, 0.2, -0.6),
+                                     end + d * Eigen::Vector3d(0.6, 0.2, -0.2), end};
     const VolumeMap arm = [&](double v, double q, double w) -> Eigen::Vector3d {
       const Eigen::Vector3d t = BezierDerivative(path, v).normalized();
       const Eigen::Vector3d n1 = t.cross(Eigen::Vector3d::UnitY()).normalized();
