@@ -12,30 +12,11 @@
 #include <optional>
 #include <utility>
 #include <variant>
-#include <vector>
 
 #include "optics/ray.h"
+#include "optics/surface_shapes.h"
 
 namespace lorgnette {
-
-// Sag and derivatives at one point: mm, -, -, 1/mm, 1/mm, 1/mm.
-struct SurfaceJet {
-  double z = 0, zx = 0, zy = 0, zxx = 0, zxy = 0, zyy = 0;
-};
-
-// Sphere or plane.
-struct SphereSurface {
-  double curvature = 0;  // 1/mm
-};
-
-// Exact torus: a circle of curvature `curvature_generator` lying in the generator meridian,
-// revolved about an axis parallel to that meridian, so that the curvature at the vertex across it
-// is `curvature_across`. Which circle generates is part of the form, not of the powers.
-struct TorusSurface {
-  double curvature_generator = 0;  // 1/mm
-  double curvature_across = 0;     // 1/mm
-  double generator_angle = 0;      // radians from +x toward +y of the generator meridian
-};
 
 // Where a ray meets the surface.
 struct SurfaceHit {
@@ -46,7 +27,8 @@ struct SurfaceHit {
 
 class Surface {
  public:
-  using Shape = std::variant<SphereSurface, TorusSurface>;
+  using Shape = std::variant<SphereSurface, TorusSurface, ConicSurface, AtoroidSurface,
+                             ProgressiveSurface, GridSurface>;
   Surface() = default;
   template <typename S>
   requires std::constructible_from<Shape, S> &&

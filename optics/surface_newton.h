@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What every surface that is not a sphere shares: Newton's method on z - sag(x, y) along a ray, and
-// the turn of a jet from a surface's own axes.
+// What every surface that is not a sphere shares: Newton's method on z - sag(x, y) along a ray.
 #pragma once
 
 #include <optional>
@@ -15,17 +14,5 @@ namespace lorgnette {
 // finishes. Of several crossings the one whose normal . direction has the sign of direction.z.
 // Tested: within 1e-12 mm of the surface; sphere as a torus equals the closed form.
 std::optional<SurfaceHit> IntersectGraph(const Surface& surface, const Ray& ray);
-
-// A jet known in axes (u, v) with v = (co, si) and u = (si, -co), expressed in (x, y).
-inline SurfaceJet RotatedJet(const SurfaceJet& j, double si, double co) {
-  SurfaceJet r;
-  r.z = j.z;
-  r.zx = si * j.zx + co * j.zy;
-  r.zy = si * j.zy - co * j.zx;
-  r.zxx = si * si * j.zxx + 2 * si * co * j.zxy + co * co * j.zyy;
-  r.zyy = co * co * j.zxx - 2 * si * co * j.zxy + si * si * j.zyy;
-  r.zxy = (si * si - co * co) * j.zxy + si * co * (j.zyy - j.zxx);
-  return r;
-}
 
 }  // namespace lorgnette
