@@ -1,0 +1,204 @@
+// SPDX-License-Identifier: Apache-2.0
+// The optics, compiled from the same C++ as the program (web/wasm/page_api.h). Every number that
+// the page shows of a lens comes from here.
+
+import create, { type OpticsModule } from "../wasm/optics.mjs";
+
+export type Pair = [number, number]; // along the cylinder axis, across it
+type MaybePair = [number | null, number | null]; // null: infinite
+
+export interface Measurement {
+  quantity: string;
+  unit: string;
+  ordered: number;
+  measured: number;
+  tolerance: number;
+  numerical_error: number;
+  source: string;
+  passed: boolean;
+}
+
+export interface Cardinal {
+  front_focal_mm: number | null;
+  back_focal_mm: number | null;
+  front_principal_mm: number | null;
+  back_principal_mm: number | null;
+}
+
+export interface Sheet {
+  ok: true;
+  index_d: number;
+  front_power_D: Pair;
+  back_power_D: Pair;
+  radius_front_mm: MaybePair;
+  radii_back_mm: MaybePair;
+  back_vertex_power_D: Pair;
+  front_vertex_power_D: Pair;
+  equivalent_power_D: Pair;
+  paper_power_D: Pair;
+  paper_power_error_D: Pair;
+  cardinal: [Cardinal | null, Cardinal | null];
+  center_thickness_mm: number;
+  edge_thickness_mm: Pair; // least, greatest
+  mass_g: number;
+  pupil_mm: number;
+  shape_factor: Pair;
+  power_factor: Pair;
+  spectacle_magnification: Pair;
+  observer_magnification_thin: number;
+  observer_magnification_paraxial: number;
+  observer_magnification_exact: number | null;
+  certificate: Measurement[];
+}
+
+export interface Refusal {
+  ok: false;
+  error: string;
+}
+
+export interface ReadEye {
+  sphere: number;
+  cylinder: number;
+  axis: number;
+  add: number;
+  prism_in: number;
+  prism_up: number;
+}
+
+export interface ReadPrescription {
+  ok: true;
+  OD: ReadEye;
+  OS: ReadEye;
+  PD: { right: number; left: number };
+  vertex_distance: number;
+}
+
+export interface LensOrder {
+  eye: "right" | "left";
+  sphere: number;
+  cylinder: number;
+  axis: number;
+  add: number;
+  prism_in: number;
+  prism_up: number;
+  medium: { name: string; index_d: number; abbe: number; density_g_cm3: number };
+  base_curve_D?: number;
+  center_thickness_mm?: number;
+  min_center_thickness_mm: number;
+  min_edge_thickness_mm: number;
+  diameter_mm?: number;
+  contour_mm?: number[];
+  vertex_distance_mm: number;
+  camera_mm: number;
+  depth_mm: number;
+  feature_height_mm: number;
+  feature_meridian_deg: number;
+}
+
+// See PageView in web/wasm/page_api.h.
+export interface View {
+  camera_mm: number;
+  cx: number;
+  cy: number;
+  x0: number;
+  y0: number;
+  x1: number;
+  y1: number;
+  depth_mm: number;
+  face_x_mm: number;
+  flat_mm: number;
+  curve: number;
+}
+
+export interface FanRay {
+  ok: boolean;
+  start: [number, number]; // height, z
+  front: [number, number];
+  back: [number, number];
+  direction: [number, number];
+}
+
+export const SLOT = { right: 0, left: 1, compare: 2, practice: 3 } as const;
+
+export class Engine {
+  private constructor(private readonly module: OpticsModule) {}
+
+  static async load(): Promise<Engine> {
+    return new Engine(await create());
+  }
+
+  // The sheet of the certified lens, or why there is none; the slot keeps its last good lens.
+  design(slot: number, order: LensOrder): Sheet | Refusal {
+    return JSON.parse(
+      this.withText(JSON.stringify(order), (p) => this.module._lg_design(slot, p)),
+    );
+  }
+
+  readPrescription(text: string, name: string): ReadPrescription | Refusal {
+    return JSON.parse(
+      this.withText(text, (p) =>
+        this.withPointer(name, (n) => this.module._lg_read_prescription(p, n)),
+      ),
+    );
+  }
+
+  // Front and back z over points (x, y): two numbers a point, NaN where a surface ends.
+  surfaces(slot: number, points: ArrayLike<number>): Float64Array {
+    const n = points.length / 2;
+    const at = this.module._malloc(8 * points.length);
+    this.module.HEAPF64.set(points, at / 8);
+    const out = this.module._lg_surfaces(slot, at, n);
+    this.module._free(at);
+    return this.module.HEAPF64.slice(out / 8, out / 8 + 2 * n);
+  }
+
+  fan(
+    slot: number,
+    meridian: number,
+    half: number,
+    count: number,
+    field: number,
+    object: number,
+    height: number,
+  ): FanRay[] {
+    const at = this.module._lg_fan(slot, meridian, half, count, field, object, height) / 8;
+    const rays: FanRay[] = [];
+    for (let i = 0; i < count; ++i) {
+      const r = this.module.HEAPF64.subarray(at + 9 * i, at + 9 * i + 9);
+      rays.push({
+        ok: r[0] === 0,
+        start: [r[1], r[2]],
+        front: [r[3], r[4]],
+        back: [r[5], r[6]],
+        direction: [r[7], r[8]],
+      });
+    }
+    return rays;
+  }
+
+  // Four numbers a pixel: status (0 ok), point of the face (x, y) in the lens frame, light kept.
+  view(slot: number, view: View, width: number, height: number): Float32Array {
+    const fields = [
+      view.camera_mm, view.cx, view.cy, view.x0, view.y0, view.x1, view.y1,
+      view.depth_mm, view.face_x_mm, view.flat_mm, view.curve,
+    ];
+    const at = this.module._malloc(8 * fields.length);
+    this.module.HEAPF64.set(fields, at / 8);
+    const out = this.module._lg_view(slot, at, width, height);
+    this.module._free(at);
+    return this.module.HEAPF32.slice(out / 4, out / 4 + 4 * width * height);
+  }
+
+  private withPointer(text: string, call: (pointer: number) => number): number {
+    const size = this.module.lengthBytesUTF8(text) + 1;
+    const at = this.module._malloc(size);
+    this.module.stringToUTF8(text, at, size);
+    const out = call(at);
+    this.module._free(at);
+    return out;
+  }
+
+  private withText(text: string, call: (pointer: number) => number): string {
+    return this.module.UTF8ToString(this.withPointer(text, call));
+  }
+}

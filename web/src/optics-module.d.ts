@@ -1,0 +1,27 @@
+// SPDX-License-Identifier: Apache-2.0
+// The module that scripts/web builds from web/wasm.
+declare module "*/wasm/optics.mjs" {
+  export interface OpticsModule {
+    HEAPF64: Float64Array;
+    HEAPF32: Float32Array;
+    _malloc(bytes: number): number;
+    _free(pointer: number): void;
+    _lg_design(slot: number, order: number): number;
+    _lg_read_prescription(text: number, name: number): number;
+    _lg_surfaces(slot: number, points: number, count: number): number;
+    _lg_fan(
+      slot: number,
+      meridian: number,
+      half: number,
+      count: number,
+      field: number,
+      object: number,
+      height: number,
+    ): number;
+    _lg_view(slot: number, view: number, width: number, height: number): number;
+    UTF8ToString(pointer: number): string;
+    stringToUTF8(text: string, pointer: number, bytes: number): void;
+    lengthBytesUTF8(text: string): number;
+  }
+  export default function create(): Promise<OpticsModule>;
+}

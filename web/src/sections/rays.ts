@@ -1,0 +1,236 @@
+// SPDX-License-Identifier: Apache-2.0
+// Object, lens, eye: exact rays that bend as the order changes, for the wearer and for an observer.
+
+import { SLOT, type FanRay } from "../app/engine";
+import { fixed } from "../app/format";
+import { contourOf, reach } from "../app/frames";
+import { IRIS_RADIUS_MM, type Order } from "../app/order";
+import type { Store } from "../app/store";
+import { t, type TextKey } from "../app/texts";
+import { view } from "../app/view";
+import { h, s, setText, uniqueId } from "../ui/dom";
+import { eyeSwitch } from "../ui/eye_switch";
+
+const EYE_RADIUS_MM = 12;
+const PUPIL_BEHIND_CORNEA_MM = 3.05;
+const FAN = 9;
+const BODY_POINTS = 60;
+const OBSERVER_FAN = 401;
+
+type Mode = "wearer" | "far" | "observer";
+
+interface Frame {
+  z0: number;
+  z1: number;
+  half: number; // height shown, mm
+}
+
+const W = 920;
+const H = 400;
+
+export function raysSection(store: Store, wanted: () => boolean): HTMLElement {
+  let mode: Mode = "wearer";
+  const drawing = s("svg", { viewBox: `0 0 ${W} ${H}`, role: "img", class: "rays-drawing" });
+  const told = h("p", { class: "told", role: "status", "aria-live": "polite" });
+  const slider = (
+    key: string, min: number, max: number, step: number, value: number, show: (v: number) => string,
+  ): { root: HTMLElement; value: () => number } => {
+    const id = uniqueId("rays");
+    const out = h("output", { for: id }, show(value));
+    const input = h("input", { id, type: "range", min, max, step, value, oninput: () => {
+      setText(out, show(Number(input.value)));
+      input.setAttribute("aria-valuetext", show(Number(input.value)));
+      draw();
+    } });
+    return {
+      root: h("div", { class: "field" }, h("label", { for: id }, t(`rays.${key}` as TextKey)), input, out),
+      value: () => Number(input.value),
+    };
+  };
+  const vergence = slider("object", -4, 0, 0.25, 0, (v) =>
+    v === 0 ? "∞" : `${fixed(-1000 / v, 0)} mm`);
+  const field = slider("field", -30, 30, 1, 0, (v) => `${fixed(v, 0)}°`);
+  const meridian = h("select", { id: uniqueId("meridian"), onchange: () => draw() },
+    h("option", { value: "0" }, t("why.along")), h("option", { value: "1" }, t("why.across")));
+  const name = uniqueId("rays-mode");
+  const modes = (["wearer", "far", "observer"] as Mode[]).map((m) =>
+    h("label", {}, h("input", { type: "radio", name, value: m, checked: m === mode, onchange: () => {
+      mode = m;
+      draw();
+    } }), t(`rays.${m}` as TextKey)));
+  const controls = h("div", { class: "ray-controls" }, vergence.root, field.root,
+    h("div", { class: "field" }, h("label", { for: meridian.id }, t("rays.meridian")), meridian));
+  const root = h("section", { class: "card rays" },
+    h("div", { class: "card-head" }, h("h2", {}, t("rays.title")), eyeSwitch()),
+    h("fieldset", { class: "switch modes" }, h("legend", { class: "visually-hidden" }, t("rays.mode")),
+      ...modes),
+    drawing, told, controls, h("p", { class: "hint" }, t("rays.hint")));
+
+  function meridianDegrees(order: Order): number {
+    const rx = order[view.eye];
+    const axis = rx.cylinder === 0 ? 180 : (rx.axis ?? 180) || 180;
+    return meridian.value === "0" ? axis : axis > 90 ? axis - 90 : axis + 90;
+  }
+
+  function draw(): void {
+    const { order, sheet: sheets } = store.lenses;
+    const { engine } = store;
+    const { eye } = view;
+    const slot = SLOT[eye];
+    const sheet = sheets[eye];
+    const which = meridian.value === "0" ? 0 : 1;
+    const degrees = meridianDegrees(order);
+    const a = (degrees * Math.PI) / 180;
+    const [ux, uy] = [-Math.cos(a), Math.sin(a)];
+    const [low, high] = reach(contourOf(order, eye), ux, uy);
+    const thick = sheet.center_thickness_mm;
+    const cornea = thick + order.vertex;
+    const cardinal = sheet.cardinal[which];
+    const focus = cardinal?.back_focal_mm ?? null; // from the back vertex
+    controls.classList.toggle("observing", mode === "observer");
+
+    const far = Math.min(1500, Math.max(80, Math.abs(focus ?? 1500) * 1.15));
+    const frame: Frame =
+      mode === "wearer"
+        ? { z0: -62, z1: 62, half: 27 }
+        : mode === "far"
+          ? { z0: -far, z1: (focus ?? -1) > 0 ? far : 0.35 * far, half: 27 }
+          : { z0: -Math.min(order.camera, 120) - 6, z1: 44, half: 27 };
+    const x = (z: number): number => ((z - frame.z0) / (frame.z1 - frame.z0)) * W;
+    const y = (height: number): number => H / 2 - (height / frame.half) * (H / 2);
+    const at = (height: number, z: number): string => `${x(z).toFixed(2)} ${y(height).toFixed(2)}`;
+    const parts: SVGElement[] = [];
+    const line = (points: [number, number][], className: string): void => {
+      parts.push(s("path", { class: className, d: `M${points.map((p) => at(p[0], p[1])).join("L")}` }));
+    };
+    const label = (height: number, z: number, text: string, anchor = "middle"): void => {
+      parts.push(s("text", { x: x(z), y: y(height), "text-anchor": anchor }, text));
+    };
+
+    line([[0, frame.z0], [0, frame.z1]], "axis");
+    drawEyeball(parts, x, y, cornea);
+    drawBody(parts, at, slot, low, high, ux, uy);
+
+    if (mode === "observer") drawObserver(slot, degrees, cornea, order, line, label);
+    else drawFan(slot, degrees, low, high, frame, line);
+
+    const mark = (z: number | null | undefined, text: string): void => {
+      if (z === null || z === undefined || z < frame.z0 || z > frame.z1) return;
+      parts.push(s("circle", { class: "focal", cx: x(z), cy: y(0), r: 4 }));
+      label(-2.2, z, text);
+    };
+    mark(cardinal?.front_focal_mm, "F");
+    mark(focus === null ? null : thick + focus, "F′");
+    for (const [z, text, lift] of [
+      [cardinal?.front_principal_mm, "H", 1], [cardinal ? thick + (cardinal.back_principal_mm ?? 0) : null, "H′", -1],
+    ] as const) {
+      if (z === null || z === undefined || mode === "far" || Math.abs(z) > 40) continue;
+      line([[-5, z], [5, z]], "plane");
+      label(lift > 0 ? 5.6 : -6.6, z, text);
+    }
+    drawing.replaceChildren(...parts);
+    drawing.setAttribute("aria-label", told.textContent ?? "");
+
+    function drawFan(
+      lens: number, angle: number, from: number, to: number, f: Frame,
+      stroke: (points: [number, number][], className: string) => void,
+    ): void {
+      const v = vergence.value();
+      const object = v === 0 ? 0 : -1000 / v;
+      const half = 0.92 * Math.min(-from, to, 24);
+      const tilt = field.value();
+      const height = -object * Math.tan((tilt * Math.PI) / 180);
+      const rays = engine.fan(lens, angle, half, FAN, tilt, object, height);
+      for (const ray of rays) {
+        if (!ray.ok) {
+          if (ray.front[1] || ray.front[0]) stroke([ray.start, ray.front], "ray lost");
+          continue;
+        }
+        const slope = ray.direction[0] / ray.direction[1];
+        const before = Math.max(ray.start[1], f.z0);
+        const inSlope = (ray.front[0] - ray.start[0]) / (ray.front[1] - ray.start[1]);
+        // Rays that came from infinity go on to the drawing's edge.
+        const startZ = object === 0 ? f.z0 : before;
+        const end = mode === "wearer" ? cornea + PUPIL_BEHIND_CORNEA_MM : f.z1;
+        stroke([
+          [ray.front[0] + inSlope * (startZ - ray.front[1]), startZ],
+          ray.front,
+          ray.back,
+          [ray.back[0] + slope * (end - ray.back[1]), end],
+        ], "ray");
+        stroke([ray.back, [ray.back[0] + slope * (f.z0 - ray.back[1]), f.z0]], "ray back");
+      }
+      const text = focus === null
+        ? t("rays.toldAfocal")
+        : t(focus < 0 ? "rays.toldMinus" : "rays.toldPlus", { mm: fixed(Math.abs(focus), 0) });
+      setText(told, text);
+    }
+  }
+
+  function drawEyeball(
+    parts: SVGElement[], x: (z: number) => number, y: (h: number) => number, cornea: number,
+  ): void {
+    const rx = x(cornea + EYE_RADIUS_MM) - x(cornea);
+    const ry = y(0) - y(EYE_RADIUS_MM);
+    const iris = cornea + PUPIL_BEHIND_CORNEA_MM;
+    parts.push(
+      s("ellipse", { class: "eyeball", cx: x(cornea + EYE_RADIUS_MM), cy: y(0), rx, ry }),
+      s("path", { class: "iris-line", d:
+        `M${x(iris)} ${y(IRIS_RADIUS_MM)}L${x(iris)} ${y(2)}M${x(iris)} ${y(-2)}L${x(iris)} ${y(-IRIS_RADIUS_MM)}` }),
+      s("circle", { class: "rotation", cx: x(cornea + 13.5), cy: y(0), r: 2.5 }),
+    );
+  }
+
+  function drawBody(
+    parts: SVGElement[], at: (height: number, z: number) => string, slot: number,
+    low: number, high: number, ux: number, uy: number,
+  ): void {
+    const heights = Array.from({ length: BODY_POINTS + 1 }, (_, i) => low + ((high - low) * i) / BODY_POINTS);
+    const z = store.engine.surfaces(slot, heights.flatMap((r) => [r * ux, r * uy]));
+    const front = heights.map((r, i) => at(r, z[2 * i]));
+    const back = heights.map((r, i) => at(r, z[2 * i + 1])).reverse();
+    parts.push(s("path", { class: "lens-body", d: `M${front.join("L")}L${back.join("L")}Z` }));
+  }
+
+  // The ray from the camera to the iris' edge, and where the edge therefore seems to be.
+  function drawObserver(
+    slot: number, degrees: number, cornea: number, order: Order,
+    line: (points: [number, number][], className: string) => void,
+    label: (height: number, z: number, text: string, anchor?: string) => void,
+  ): void {
+    const rays = store.engine.fan(slot, degrees, 12, OBSERVER_FAN, 0, order.camera, 0);
+    const iris = cornea + PUPIL_BEHIND_CORNEA_MM;
+    const heightAt = (ray: FanRay): number =>
+      ray.back[0] + ((iris - ray.back[1]) * ray.direction[0]) / ray.direction[1];
+    for (const target of [IRIS_RADIUS_MM, -IRIS_RADIUS_MM]) {
+      const i = rays.findIndex((ray, k) =>
+        k > 0 && ray.ok && rays[k - 1].ok &&
+        (heightAt(rays[k - 1]) - target) * (heightAt(ray) - target) <= 0);
+      if (i < 1) continue;
+      const [p, q] = [rays[i - 1], rays[i]];
+      const f = (target - heightAt(p)) / (heightAt(q) - heightAt(p));
+      const mix = (u: [number, number], v: [number, number]): [number, number] => [
+        u[0] + f * (v[0] - u[0]), u[1] + f * (v[1] - u[1])];
+      const front = mix(p.front, q.front);
+      const tangent = front[0] / (order.camera + front[1]);
+      const apparent = tangent * (order.camera + iris);
+      line([[0, -order.camera], front, mix(p.back, q.back), [target, iris]], "ray");
+      line([front, [apparent, iris]], "ray back");
+      line([[apparent - 0.35 * Math.sign(target), iris], [apparent + 0.35 * Math.sign(target), iris]], "apparent");
+      if (target > 0) {
+        const ratio = apparent / target;
+        label(IRIS_RADIUS_MM + (ratio > 1 ? 2.2 : 1), iris + 2, t(ratio > 1 ? "rays.larger" : "rays.smaller"), "start");
+        setText(told, t("rays.toldObserver", {
+          mm: fixed(apparent, 2), bare: fixed(target, 2), ratio: fixed(ratio, 4),
+        }));
+      }
+    }
+    label(2, -Math.min(order.camera, 120), t("rays.toCamera", { mm: fixed(order.camera, 0) }), "start");
+  }
+
+  store.onLenses(draw, wanted);
+  view.onChange(() => {
+    if (wanted()) draw();
+  });
+  return root;
+}

@@ -1,0 +1,55 @@
+// SPDX-License-Identifier: Apache-2.0
+// What the optician's page calls: plain C functions, JSON text in, JSON text or arrays of numbers
+// out. A designed lens stays in a numbered slot until that slot is designed anew with success, so
+// that a bad order leaves the last good lens in place.
+//
+// Points are in the lens frame (optics/ray.h): +x to the wearer's right, +y up, +z toward the eye,
+// origin at the front vertex. Functions that return a pointer own what it points to until the next
+// call of the same function.
+#pragma once
+
+#include <cstddef>
+
+#ifdef __EMSCRIPTEN__
+#include <emscripten.h>
+#define LG_PAGE_API extern "C" EMSCRIPTEN_KEEPALIVE
+#else
+#define LG_PAGE_API extern "C"
+#endif
+
+inline constexpr int kPageSlots = 4;  // right, left, and two for comparisons
+
+// Designs and certifies the order of one eye into `slot`:
+//   {"eye": "right", "sphere": -4, "cylinder": -0.5, "axis": 90, "medium": {"name", "index_d",
+//    "abbe", "density_g_cm3"}, "base_curve_D", "center_thickness_mm", "min_center_thickness_mm",
+//    "min_edge_thickness_mm", "diameter_mm", "contour_mm": [x0, y0, ...], "vertex_distance_mm",
+//    "camera_mm", "depth_mm", "feature_height_mm", "feature_meridian_deg"}
+// Returns {"ok": true, ...the names of `lorgnette lens --json`..., "certificate": [...]}
+// or {"ok": false, "error": sentence}.
+LG_PAGE_API const char* lg_design(int slot, const char* order_json);
+
+// A prescription for both eyes in our JSON or FHIR, checked and written back in our names:
+// {"ok": true, "OD": {...}, "OS": {...}, "PD": {...}, "vertex_distance": 13}
+LG_PAGE_API const char* lg_read_prescription(const char* text, const char* name);
+
+// Both surfaces at n points (x, y): front z, back z (parallel to the axis); NaN where a surface
+// ends. 2 n numbers.
+LG_PAGE_API const double* lg_surfaces(int slot, const double* points, int n);
+
+// A fan of n rays in a TABO meridian, parallel to the axis turned by field_deg (object at infinity,
+// object_mm = 0) or from a point object_mm before the front vertex and object_height_mm off the
+// axis; ray i meets the front at about height -half..half. For each ray 9 numbers: status
+// (0 ok), start (h, z), front (h, z), back (h, z), exit direction (h, z).
+LG_PAGE_API const double* lg_fan(int slot, double meridian_deg, double half_mm, int n,
+                                 double field_deg, double object_mm, double object_height_mm);
+
+// What a pinhole camera sees through the lens. Camera at (cx, cy) off the lens axis, camera_mm
+// before the front vertex. Pixel (i, j), rows downwards, of a w x h grid over the rectangle
+// [x0, x1] x [y0, y1] of the plane through the front vertex. The face lies behind the back vertex
+// at depth_mm + curve * max(0, |x + face_x_mm| - flat_mm)^2 / 100, with x + face_x_mm counted from
+// the middle of the face. For each pixel 4 numbers: status (0 ok), the point of the face (x, y),
+// and the share of light that both surfaces let through. 4 w h numbers.
+struct PageView {
+  double camera_mm, cx, cy, x0, y0, x1, y1, depth_mm, face_x_mm, flat_mm, curve;
+};
+LG_PAGE_API const float* lg_view(int slot, const PageView* view, int w, int h);

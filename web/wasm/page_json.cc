@@ -1,0 +1,155 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "page_json.h"
+
+#include <cmath>
+#include <nlohmann/json.hpp>
+
+#include "base/json_reader.h"
+
+namespace lorgnette::page {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+constexpr double kMaxLength_mm = 1e5;
+
+// Not-a-number and infinity (a plano radius) have no JSON; they become null.
+Json Number(double value) { return std::isfinite(value) ? Json(value) : Json(nullptr); }
+Json Pair(const MeridianPair& pair) {
+  return Json::array({Number(pair.along), Number(pair.across)});
+}
+
+Json Cardinal(const std::optional<CardinalPoints>& points) {
+  if (!points) return nullptr;
+  return {{"front_focal_mm", Number(points->front_focal_mm)},
+          {"back_focal_mm", Number(points->back_focal_mm)},
+          {"front_principal_mm", Number(points->front_principal_mm)},
+          {"back_principal_mm", Number(points->back_principal_mm)}};
+}
+
+std::optional<double> OptionalNumber(JsonReader& json, const char* key, double min, double max) {
+  if (!json.Has(key)) return std::nullopt;
+  return json.Number(key, min, max);
+}
+
+Json EyeJson(const EyePrescription& rx) {
+  return {{"sphere", rx.sphere.value()},     {"cylinder", rx.cylinder.value()},
+          {"axis", rx.axis.value()},         {"add", rx.add.value()},
+          {"prism_in", rx.prism_in.value()}, {"prism_up", rx.prism_up.value()}};
+}
+
+}  // namespace
+
+Result<PageOrder> ReadOrder(const std::string& json_text) {
+  LG_ASSIGN(JsonReader json, JsonReader::Parse(json_text, "order"));
+  PageOrder page;
+  LensOrder& order = page.order;
+  const std::string eye = json.StringOr("eye", "right");
+  if (eye != "right" && eye != "left") json.Fail("eye", "got " + eye + ", want right or left");
+  order.eye = eye == "left" ? Eye::kLeft : Eye::kRight;
+  EyePrescription& rx = order.rx;
+  rx.sphere = Diopters(json.Number("sphere", -kMaxSphere, kMaxSphere));
+  rx.cylinder = Diopters(json.NumberOr("cylinder", 0, -kMaxCylinder, kMaxCylinder));
+  rx.axis = AxisDegrees(json.NumberOr("axis", 180, 0, 180));
+  rx.add = Diopters(json.NumberOr("add", 0, 0, kMaxAdd));
+  rx.prism_in = PrismDiopters(json.NumberOr("prism_in", 0, -kMaxPrism, kMaxPrism));
+  rx.prism_up = PrismDiopters(json.NumberOr("prism_up", 0, -kMaxPrism, kMaxPrism));
+  if (json.Has("medium")) {
+    JsonReader medium = json.Object("medium");
+    order.medium.name = medium.StringOr("name", order.medium.name);
+    order.medium.index_d = medium.NumberOr("index_d", order.medium.index_d, 1.3, 2.5);
+    order.medium.abbe = medium.NumberOr("abbe", order.medium.abbe, 10, 120);
+    order.medium.density_g_cm3 =
+        medium.NumberOr("density_g_cm3", order.medium.density_g_cm3, 0.5, 10);
+  }
+  if (const auto base = OptionalNumber(json, "base_curve_D", -20, 30)) {
+    order.base_curve = Diopters(*base);
+  }
+  order.center_thickness_mm = OptionalNumber(json, "center_thickness_mm", 0.1, 60);
+  order.min_center_thickness_mm =
+      json.NumberOr("min_center_thickness_mm", order.min_center_thickness_mm, 0.1, 20);
+  order.min_edge_thickness_mm =
+      json.NumberOr("min_edge_thickness_mm", order.min_edge_thickness_mm, 0, 20);
+  order.diameter_mm = json.NumberOr("diameter_mm", order.diameter_mm, 4, 120);
+  if (json.Has("contour_mm")) {
+    const std::vector<double> flat = json.Numbers("contour_mm");
+    if (flat.size() % 2 != 0 || flat.size() < 6) {
+      json.Fail("contour_mm", "got " + std::to_string(flat.size()) + " numbers, want x, y pairs");
+    }
+    for (std::size_t i = 0; i + 1 < flat.size(); i += 2) {
+      order.contour_mm.emplace_back(flat[i], flat[i + 1]);
+    }
+  }
+  SheetRequest& request = page.request;
+  order.vertex_distance_mm = json.NumberOr("vertex_distance_mm", 13, kMinVertex_mm, kMaxVertex_mm);
+  request.observer.camera_mm =
+      json.NumberOr("camera_mm", request.observer.camera_mm, 20, kMaxLength_mm);
+  request.observer.depth_mm = json.NumberOr(
+      "depth_mm", order.vertex_distance_mm + kEntrancePupilDepth_mm, 0, kMaxLength_mm);
+  request.feature_height_mm =
+      json.NumberOr("feature_height_mm", request.feature_height_mm, -100, 100);
+  request.feature_meridian_deg =
+      json.NumberOr("feature_meridian_deg", request.feature_meridian_deg, 0, 180);
+  LG_RETURN_IF_ERROR(json.Finish());
+  return page;
+}
+
+std::string SheetJson(const CertifiedLens& lens, const LensSheet& sheet) {
+  Json certificate = Json::array();
+  for (const Measurement& m : lens.certificate().measurements) {
+    certificate.push_back({{"quantity", m.quantity},
+                           {"unit", m.unit},
+                           {"ordered", Number(m.ordered)},
+                           {"measured", Number(m.measured)},
+                           {"tolerance", Number(m.tolerance)},
+                           {"numerical_error", Number(m.numerical_error)},
+                           {"source", m.source},
+                           {"passed", m.passed()}});
+  }
+  const Medium& medium = lens.lens().medium;
+  const Json out = {
+      {"ok", true},
+      {"index_d", medium.index_d},
+      {"front_power_D", Pair(sheet.front_power_D)},
+      {"back_power_D", Pair(sheet.back_power_D)},
+      {"radius_front_mm", Pair(sheet.radius_front_mm)},
+      {"radii_back_mm", Pair(sheet.radii_back_mm)},
+      {"back_vertex_power_D", Pair(sheet.back_vertex_power_D)},
+      {"front_vertex_power_D", Pair(sheet.front_vertex_power_D)},
+      {"equivalent_power_D", Pair(sheet.equivalent_power_D)},
+      {"paper_power_D", Pair(sheet.paper_power_D)},
+      {"paper_power_error_D", Pair(sheet.paper_power_error_D)},
+      {"cardinal", Json::array({Cardinal(sheet.cardinal_along), Cardinal(sheet.cardinal_across)})},
+      {"center_thickness_mm", sheet.center_thickness_mm},
+      {"edge_thickness_mm",
+       Json::array({Number(sheet.edge_thickness_min_mm), Number(sheet.edge_thickness_max_mm)})},
+      {"mass_g", Number(sheet.mass_g)},
+      {"pupil_mm", sheet.pupil_mm},
+      {"shape_factor", Pair(sheet.shape_factor)},
+      {"power_factor", Pair(sheet.power_factor)},
+      {"spectacle_magnification", Pair(sheet.spectacle_magnification)},
+      {"observer_magnification_thin", Number(sheet.observer_magnification_thin)},
+      {"observer_magnification_paraxial", Number(sheet.observer_magnification_paraxial)},
+      {"observer_magnification_exact", sheet.observer_magnification_exact
+                                           ? Number(*sheet.observer_magnification_exact)
+                                           : Json(nullptr)},
+      {"certificate", certificate},
+  };
+  return out.dump();
+}
+
+std::string ErrorJson(const Error& error) {
+  return Json({{"ok", false}, {"error", error.message}})
+      .dump(-1, ' ', true, Json::error_handler_t::replace);
+}
+
+std::string PrescriptionJson(const Prescription& prescription) {
+  return Json({{"ok", true},
+               {"OD", EyeJson(prescription.right)},
+               {"OS", EyeJson(prescription.left)},
+               {"PD", {{"right", prescription.pd_right_mm}, {"left", prescription.pd_left_mm}}},
+               {"vertex_distance", prescription.vertex_distance_mm}})
+      .dump();
+}
+
+}  // namespace lorgnette::page
