@@ -3,8 +3,10 @@
 
 #include <cmath>
 #include <type_traits>
+#include <variant>
 
 #include "optics/lens_kernel_job.h"
+#include "optics/lens_kernel_scalar.h"
 #include "optics/ray.h"
 #include "optics/trace.h"
 
@@ -336,11 +338,20 @@ FaceParams<T> ParamsOf(const Lens& lens, LensFace face) {
   return ParamsOf<T>(lens.back, lens.center_thickness_mm, BackRotation(lens));
 }
 
+bool HasSimdForm(const Surface& surface) {
+  return std::holds_alternative<SphereSurface>(surface.shape()) ||
+         std::holds_alternative<TorusSurface>(surface.shape());
+}
+
 template <typename T>
-LensJob<T> MakeLensJob(const Lens& lens, double index, const RayArrays<const T>& in, std::size_t n,
-                       const LensBatchOutput<T>& out) {
-  LensJob<T> job;
+void RunLens(const Lens& lens, double index, const RayArrays<const T>& in, std::size_t n,
+             const LensBatchOutput<T>& out) {
+  if (n == 0) return;
+  if (!HasSimdForm(lens.front) || !HasSimdForm(lens.back)) {
+    return TraceLensScalar(lens, index, in, n, out);
+  }
   const bool forward = in.dz[0] > 0;
+  LensJob<T> job;
   job.first = ParamsOf<T>(lens, forward ? LensFace::kFront : LensFace::kBack);
   job.second = ParamsOf<T>(lens, forward ? LensFace::kBack : LensFace::kFront);
   job.sense = forward ? T(1) : T(-1);
@@ -348,12 +359,20 @@ LensJob<T> MakeLensJob(const Lens& lens, double index, const RayArrays<const T>&
   job.in = in;
   job.n = n;
   job.out = out;
-  return job;
+  if constexpr (std::is_same_v<T, float>) {
+    HWY_DYNAMIC_DISPATCH(TraceLensFloat)(job);
+  } else {
+    HWY_DYNAMIC_DISPATCH(TraceLensDouble)(job);
+  }
 }
 
 template <typename T>
-FaceJob<T> MakeFaceJob(const Lens& lens, LensFace face, double index, const RayArrays<const T>& in,
-                       std::size_t n, const FaceBatchOutput<T>& out) {
+void RunFace(const Lens& lens, LensFace face, double index, const RayArrays<const T>& in,
+             std::size_t n, const FaceBatchOutput<T>& out) {
+  if (n == 0) return;
+  if (!HasSimdForm(face == LensFace::kFront ? lens.front : lens.back)) {
+    return TraceFaceScalar(lens, face, index, in, n, out);
+  }
   FaceJob<T> job;
   job.face = ParamsOf<T>(lens, face);
   job.sense = face == LensFace::kBack ? T(1) : T(-1);
@@ -361,7 +380,11 @@ FaceJob<T> MakeFaceJob(const Lens& lens, LensFace face, double index, const RayA
   job.in = in;
   job.n = n;
   job.out = out;
-  return job;
+  if constexpr (std::is_same_v<T, float>) {
+    HWY_DYNAMIC_DISPATCH(TraceFaceFloat)(job);
+  } else {
+    HWY_DYNAMIC_DISPATCH(TraceFaceDouble)(job);
+  }
 }
 
 }  // namespace
@@ -369,27 +392,20 @@ FaceJob<T> MakeFaceJob(const Lens& lens, LensFace face, double index, const RayA
 
 void TraceLensBatch(const Lens& lens, double index, const RayArrays<const float>& in, std::size_t n,
                     const LensBatchOutput<float>& out) {
-  if (n == 0) return;
-  HWY_DYNAMIC_DISPATCH(kernel::TraceLensFloat)(kernel::MakeLensJob(lens, index, in, n, out));
+  kernel::RunLens(lens, index, in, n, out);
 }
-
 void TraceLensBatch(const Lens& lens, double index, const RayArrays<const double>& in,
                     std::size_t n, const LensBatchOutput<double>& out) {
-  if (n == 0) return;
-  HWY_DYNAMIC_DISPATCH(kernel::TraceLensDouble)(kernel::MakeLensJob(lens, index, in, n, out));
+  kernel::RunLens(lens, index, in, n, out);
 }
-
 void TraceFaceBatch(const Lens& lens, LensFace face, double index, const RayArrays<const float>& in,
                     std::size_t n, const FaceBatchOutput<float>& out) {
-  if (n == 0) return;
-  HWY_DYNAMIC_DISPATCH(kernel::TraceFaceFloat)(kernel::MakeFaceJob(lens, face, index, in, n, out));
+  kernel::RunFace(lens, face, index, in, n, out);
 }
-
 void TraceFaceBatch(const Lens& lens, LensFace face, double index,
                     const RayArrays<const double>& in, std::size_t n,
                     const FaceBatchOutput<double>& out) {
-  if (n == 0) return;
-  HWY_DYNAMIC_DISPATCH(kernel::TraceFaceDouble)(kernel::MakeFaceJob(lens, face, index, in, n, out));
+  kernel::RunFace(lens, face, index, in, n, out);
 }
 
 const char* LensKernelTarget() { return HWY_DYNAMIC_DISPATCH(kernel::TargetName)(); }

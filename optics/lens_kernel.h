@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Batches of rays through a lens by SIMD (Highway, dispatched at run time): what the compositor
 // calls for every lens pixel. Agrees with TraceThrough (optics/trace.h) within the bounds below.
+// Surfaces without a SIMD form take the scalar path behind the same functions.
 //
 // Everything is in the lens frame (optics/ray.h), mm. Arrays need no alignment and no padding: a
 // ragged tail is handled inside. No NaN comes back, whatever goes in: each ray has a status.

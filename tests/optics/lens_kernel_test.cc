@@ -302,6 +302,28 @@ void ExpectNoNanWhateverGoesIn() {
 TEST(LensKernel, ReturnsNoNanWhateverGoesInDouble) { ExpectNoNanWhateverGoesIn<double>(); }
 TEST(LensKernel, ReturnsNoNanWhateverGoesInFloat) { ExpectNoNanWhateverGoesIn<float>(); }
 
+TEST(LensKernel, SurfacesWithoutASimdFormGiveTheScalarAnswer) {
+  AtoroidSurface atoroid;
+  atoroid.curvature_generator = 1 / 54.47;
+  atoroid.curvature_across = 1 / 74.86;
+  atoroid.conic_across = -0.7;
+  const Lens lens = MakeLens(Sphere(1 / 300.0), Surface(atoroid), 1.5);
+  const std::vector<Ray> rays = TestRays(50, true, 29);
+  Batch<double> batch(rays.size());
+  for (std::size_t i = 0; i < rays.size(); ++i) batch.Set(i, rays[i]);
+  batch.Trace(lens, 1.6);
+  int compared = 0;
+  for (std::size_t i = 0; i < rays.size(); ++i) {
+    const LensTrace scalar = TraceThrough(lens, rays[i], 1.6);
+    ASSERT_EQ(RayStatus(batch.status[i]), scalar.status);
+    if (scalar.status != RayStatus::kOk) continue;
+    ++compared;
+    EXPECT_LT((batch.At(batch.exit, i, 0).cast<double>() - scalar.exit.origin).norm(), 1e-12);
+    EXPECT_LT((batch.At(batch.second, i, 3).cast<double>() - scalar.second.normal).norm(), 1e-12);
+  }
+  EXPECT_GT(compared, 20);
+}
+
 TEST(LensKernel, RayThatTravelsTheOtherWayMisses) {
   Batch<double> batch(2);
   batch.Set(0, {{1, 2, -50}, {0, 0, 1}});
