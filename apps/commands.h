@@ -1,0 +1,28 @@
+// SPDX-License-Identifier: Apache-2.0
+// The subcommands, each added by one function. Private to apps/.
+#pragma once
+
+#include <iosfwd>
+
+#include "base/result.h"
+
+namespace CLI {
+class App;
+}
+
+namespace lorgnette {
+
+// Where a command prints, and what came of it.
+struct CommandContext {
+  std::ostream& out;
+  Status status;
+};
+
+void AddTryonCommand(CLI::App& program, CommandContext& context);
+void AddTrackCommand(CLI::App& program, CommandContext& context);
+void AddLensCommand(CLI::App& program, CommandContext& context);
+void AddMeasureCommand(CLI::App& program, CommandContext& context);
+void AddFramesCommand(CLI::App& program, CommandContext& context);
+void AddValidateCommand(CLI::App& program, CommandContext& context);
+
+}  // namespace lorgnette
