@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <unordered_set>
 
 #include "base/units.h"
@@ -12,8 +13,9 @@
 namespace lorgnette {
 namespace {
 
-constexpr double kNear_mm = 10;  // contact shadows are sharper than the far lattice up to here
-constexpr int kMaxCells = 24;    // along a triangle's side
+constexpr double kNear_mm = 6;  // contact shadows are sharper than the far lattice up to here
+constexpr int kOpenDirections = 256;
+constexpr int kMaxCells = 24;  // along a triangle's side
 constexpr float kFrameLift_mm = 0.02f;
 // Smooth normals rise above the flat triangles; rays against the face start this far off it.
 constexpr float kFaceLift_mm = 0.3f;
@@ -89,17 +91,10 @@ BakedShadow BakedShadow::Bake(const EmbreeScene& scene, const TriangleMesh& face
   }
   baked.point_count_ = points.size();
 
-  const std::vector<Eigen::Vector3f> sphere = SphereDirections(options.directions);
-  std::vector<Harmonics> harmonics;
-  for (const Eigen::Vector3f& d : sphere) harmonics.push_back(EvaluateHarmonics(d));
-  const float solid_angle = float(4 * kPi) / float(options.directions);
+  baked.BakeOpenLight(scene, face, options);
 
-  struct PointResult {
-    std::vector<Blocked> blocked;
-    Harmonics transfer;
-    float bounce = 0;
-  };
-  std::vector<PointResult> results(points.size());
+  const std::vector<Eigen::Vector3f> sphere = SphereDirections(options.directions);
+  std::vector<std::vector<Blocked>> results(points.size());
   tbb::parallel_for(std::size_t(0), points.size(), [&](std::size_t i) {
     const LatticeCorner& at = points[i];
     const Eigen::Vector3i& triangle = face.triangles[at.triangle];
@@ -110,54 +105,29 @@ BakedShadow BakedShadow::Bake(const EmbreeScene& scene, const TriangleMesh& face
       normal += w[k] * face.normals[std::size_t(triangle[k])].cast<float>();
     }
     normal.normalize();
-    PointResult& result = results[i];
+    std::vector<Blocked>& blocked = results[i];
     ForHemispherePackets(sphere, position + kFrameLift_mm * normal, normal,
                          [&](std::size_t first, RayPacket& packet, const float* cosine) {
                            scene.Occluded16(RaySet::kFrame, packet);
                            for (std::size_t k = 0; k < RayPacket::kSize; ++k) {
                              if (packet.valid[k] && packet.far[k] < 0) {
-                               result.blocked.push_back({std::uint16_t(first + k), cosine[k]});
+                               blocked.push_back({std::uint16_t(first + k), cosine[k]});
                              }
                            }
                          });
-    if (result.blocked.empty()) return;
-    result.transfer.fill(0);
-    float open = 0, closed = 0;
-    std::vector<Blocked> seen;
-    std::size_t next = 0;
-    ForHemispherePackets(sphere, position + kFaceLift_mm * normal, normal,
-                         [&](std::size_t first, RayPacket& packet, const float* cosine) {
-                           if (options.sees_face) scene.Occluded16(RaySet::kHead, packet);
-                           for (std::size_t k = 0; k < RayPacket::kSize; ++k) {
-                             if (!packet.valid[k]) continue;
-                             const bool by_frame = next < result.blocked.size() &&
-                                                   result.blocked[next].direction == first + k;
-                             if (by_frame) ++next;
-                             if (packet.far[k] < 0) {
-                               closed += cosine[k];
-                               continue;
-                             }
-                             open += cosine[k];
-                             if (by_frame) seen.push_back({std::uint16_t(first + k), cosine[k]});
-                             const Harmonics& h = harmonics[first + k];
-                             for (std::size_t j = 0; j < kHarmonics; ++j) {
-                               result.transfer[j] += solid_angle * cosine[k] * h[j];
-                             }
-                           }
-                         });
-    result.blocked = std::move(seen);
-    result.bounce = open > 0 ? options.interreflection * closed / open : 0;
+    if (options.sees_face) {
+      KeepWhatTheFaceLeaves(scene, sphere, position + kFaceLift_mm * normal, blocked);
+    }
   });
 
   std::vector<bool> is_touched(points.size(), false);
   for (std::size_t i = 0; i < points.size(); ++i) {
-    const PointResult& result = results[i];
-    if (result.blocked.empty()) continue;
+    if (results[i].empty()) continue;
     is_touched[i] = true;
     baked.touched_.push_back({std::uint32_t(i), std::uint32_t(baked.blocked_.size()),
-                              std::uint32_t(result.blocked.size()), result.transfer,
-                              result.bounce});
-    baked.blocked_.insert(baked.blocked_.end(), result.blocked.begin(), result.blocked.end());
+                              std::uint32_t(results[i].size()), face.triangles[points[i].triangle],
+                              points[i].u, points[i].v});
+    baked.blocked_.insert(baked.blocked_.end(), results[i].begin(), results[i].end());
   }
   for (Lattice& lattice : baked.lattices_) {
     const std::uint32_t n = (lattice.cells + 1u) * (lattice.cells + 2u) / 2;
@@ -168,21 +138,97 @@ BakedShadow BakedShadow::Bake(const EmbreeScene& scene, const TriangleMesh& face
   return baked;
 }
 
+// Keeps the blocked directions that would have been open without the frame.
+void BakedShadow::KeepWhatTheFaceLeaves(const EmbreeScene& scene,
+                                        const std::vector<Eigen::Vector3f>& sphere,
+                                        const Eigen::Vector3f& origin,
+                                        std::vector<Blocked>& blocked) {
+  std::size_t kept = 0;
+  for (std::size_t first = 0; first < blocked.size(); first += RayPacket::kSize) {
+    RayPacket packet;
+    for (std::size_t k = 0; k < RayPacket::kSize; ++k) {
+      const bool valid = first + k < blocked.size();
+      const Eigen::Vector3f& d = sphere[blocked[valid ? first + k : first].direction];
+      packet.valid[k] = valid;
+      packet.ox[k] = origin.x();
+      packet.oy[k] = origin.y();
+      packet.oz[k] = origin.z();
+      packet.near[k] = 0;
+      packet.dx[k] = d.x();
+      packet.dy[k] = d.y();
+      packet.dz[k] = d.z();
+      packet.far[k] = std::numeric_limits<float>::infinity();
+    }
+    scene.Occluded16(RaySet::kHead, packet);
+    for (std::size_t k = 0; k < RayPacket::kSize; ++k) {
+      if (packet.valid[k] && packet.far[k] >= 0) blocked[kept++] = blocked[first + k];
+    }
+  }
+  blocked.resize(kept);
+}
+
+void BakedShadow::BakeOpenLight(const EmbreeScene& scene, const TriangleMesh& face,
+                                const ShadowOptions& options) {
+  const std::vector<Eigen::Vector3f> sphere = SphereDirections(kOpenDirections);
+  std::vector<Harmonics> harmonics;
+  for (const Eigen::Vector3f& d : sphere) harmonics.push_back(EvaluateHarmonics(d));
+  const float solid_angle = float(4 * kPi) / kOpenDirections;
+  open_.resize(face.positions.size());
+  tbb::parallel_for(std::size_t(0), face.positions.size(), [&](std::size_t i) {
+    const Eigen::Vector3f normal = face.normals[i].cast<float>();
+    Open& point = open_[i];
+    point.transfer.fill(0);
+    float open = 0, closed = 0;
+    ForHemispherePackets(sphere, face.positions[i].cast<float>() + kFaceLift_mm * normal, normal,
+                         [&](std::size_t first, RayPacket& packet, const float* cosine) {
+                           if (options.sees_face) scene.Occluded16(RaySet::kHead, packet);
+                           for (std::size_t k = 0; k < RayPacket::kSize; ++k) {
+                             if (!packet.valid[k]) continue;
+                             if (packet.far[k] < 0) {
+                               closed += cosine[k];
+                               continue;
+                             }
+                             open += cosine[k];
+                             for (std::size_t j = 0; j < kHarmonics; ++j) {
+                               point.transfer[j] +=
+                                   solid_angle * cosine[k] * harmonics[first + k][j];
+                             }
+                           }
+                         });
+    point.bounce = open > 0 ? options.interreflection * closed / open : 0;
+  });
+}
+
 std::vector<Eigen::Vector3f> BakedShadow::Relight(const HeadLight& light) const {
+  // Light at the vertices, and how much of it comes by way of the face.
+  std::vector<Eigen::Vector3f> all(open_.size());
+  tbb::parallel_for(std::size_t(0), open_.size(), [&](std::size_t i) {
+    Eigen::Vector3f sum = Eigen::Vector3f::Zero();
+    for (std::size_t j = 0; j < kHarmonics; ++j) {
+      sum += open_[i].transfer[j] * light.harmonics[j];
+    }
+    all[i] = sum.cwiseMax(0.0f);
+  });
   std::vector<Eigen::Vector3f> ratios(point_count_, Eigen::Vector3f::Ones());
   tbb::parallel_for(std::size_t(0), touched_.size(), [&](std::size_t i) {
     const Touched& point = touched_[i];
-    Eigen::Vector3f lost = Eigen::Vector3f::Zero(), all = Eigen::Vector3f::Zero();
+    Eigen::Vector3f lost = Eigen::Vector3f::Zero();
     for (std::uint32_t k = 0; k < point.blocked_count; ++k) {
       const Blocked& b = blocked_[point.first_blocked + k];
       lost += b.cosine * light.cells[b.direction];
     }
-    for (std::size_t j = 0; j < kHarmonics; ++j) all += point.transfer[j] * light.harmonics[j];
+    const float w[3] = {1 - point.u - point.v, point.u, point.v};
+    Eigen::Vector3f without = Eigen::Vector3f::Zero();
+    float bounce = 0;
+    for (int k = 0; k < 3; ++k) {
+      without += w[k] * all[std::size_t(point.vertices[k])];
+      bounce += w[k] * open_[std::size_t(point.vertices[k])].bounce;
+    }
     for (int c = 0; c < 3; ++c) {
       // Ringing of the harmonics could leave less light than the list has lost.
-      const float open = std::max(all[c], lost[c]);
-      const float bounce = point.bounce * open;
-      ratios[point.point][c] = open > 0 ? (open - lost[c] + bounce) / (open + bounce) : 1.0f;
+      const float open = std::max(without[c], lost[c]);
+      const float back = bounce * open;
+      ratios[point.point][c] = open > 0 ? (open - lost[c] + back) / (open + back) : 1.0f;
     }
   });
   return ratios;

@@ -84,12 +84,24 @@ class BakedShadow {
   struct Touched {
     std::uint32_t point;
     std::uint32_t first_blocked, blocked_count;
-    Harmonics transfer;  // light that arrives without glasses
-    float bounce;        // light from the face itself, in units of that
+    Eigen::Vector3i vertices;  // of its triangle
+    float u, v;
   };
+  // Light that arrives without glasses, at the vertices: it varies slowly.
+  struct Open {
+    Harmonics transfer;
+    float bounce = 0;  // light from the face itself, in units of that
+  };
+  void BakeOpenLight(const EmbreeScene& scene, const TriangleMesh& face,
+                     const ShadowOptions& options);
+  static void KeepWhatTheFaceLeaves(const EmbreeScene& scene,
+                                    const std::vector<Eigen::Vector3f>& sphere,
+                                    const Eigen::Vector3f& origin, std::vector<Blocked>& blocked);
+
   std::size_t point_count_ = 0;
   std::vector<Lattice> lattices_;       // one a triangle
   std::vector<std::uint32_t> corners_;  // point indices, (cells + 1)(cells + 2) / 2 a triangle
+  std::vector<Open> open_;              // one a vertex
   std::vector<Touched> touched_;
   std::vector<Blocked> blocked_;
 };
