@@ -20,10 +20,10 @@ constexpr double kCanonicalPitchDeg = 2.0;
 // Landmarks scatter and slide by this share of the pupil distance (docs/tracking.md).
 constexpr double kLandmarkSigma = 0.03;
 // How far a personal face may leave the canonical one: across and up, and in depth (mm).
-constexpr double kShapeSigmaAcross = 20, kShapeSigmaDepth = 2;
+const Eigen::Vector3d kShapeSigmaMm(20, 20, 2);
 constexpr double kFrontalWithinDeg =
     10;                     // weight of a frame falls with the angle to its most frontal
-constexpr int kRounds = 4;  // of poses and points in turn
+constexpr int kRounds = 3;  // of poses and points in turn
 constexpr std::size_t kMostFrames = 60;  // frames that shape the face
 
 Eigen::Vector3d MeanOf(const std::vector<Eigen::Vector3d>& points, const std::array<int, 4>& ids) {
@@ -98,6 +98,14 @@ Similarity HeadFromPoints(const std::vector<Eigen::Vector3d>& points,
   return head;
 }
 
+Eigen::Isometry3d Similarity::Rebased(const Eigen::Isometry3d& camera_from_point) const {
+  Eigen::Isometry3d camera_from_head = Eigen::Isometry3d::Identity();
+  camera_from_head.linear() = camera_from_point.linear() * rotation.transpose();
+  camera_from_head.translation() =
+      scale * camera_from_point.translation() - camera_from_head.linear() * shift;
+  return camera_from_head;
+}
+
 std::vector<Eigen::Vector3d> CanonicalHead(const CanonicalMesh& canonical, double pd_mm) {
   const Similarity head = HeadFromPoints(canonical.mesh.positions, canonical, pd_mm);
   std::vector<Eigen::Vector3d> points;
@@ -128,49 +136,40 @@ PoseFit FitLandmarkPose(const Camera& camera, const std::vector<Eigen::Vector3d>
   return FitPose(camera, sightings, guess, 2 * kLandmarkSigma * span_px);
 }
 
-std::vector<Eigen::Vector3d> FitFace(const Camera& camera, const CanonicalMesh& canonical,
-                                     const std::vector<const FaceLandmarks*>& frames, double pd_mm,
-                                     std::vector<PoseFit>& poses) {
-  const std::vector<Eigen::Vector3d> prior = CanonicalHead(canonical, pd_mm);
-  std::vector<Eigen::Vector3d> head = prior;
-  poses.assign(frames.size(), PoseFit());
-  const auto fit_poses = [&](std::size_t stride) {
-    for (std::size_t f = 0; f < frames.size(); f += stride) {
-      if (frames[f] == nullptr) continue;
-      poses[f] = FitLandmarkPose(camera, head, canonical.rigid_weight, *frames[f]);
-    }
-  };
-  fit_poses(1);
-  double most_frontal = kPi;
-  for (std::size_t f = 0; f < frames.size(); ++f) {
-    if (frames[f]) most_frontal = std::min(most_frontal, AngleToCamera(poses[f].camera_from_head));
-  }
+std::vector<Eigen::Vector3d> ShapeFromLandmarks(const Camera& camera,
+                                                const std::vector<Eigen::Vector3d>& prior,
+                                                const Eigen::Vector3d& prior_sigma_mm,
+                                                const std::vector<const FaceLandmarks*>& frames,
+                                                const std::vector<Eigen::Isometry3d>& poses) {
   const std::size_t stride = std::max<std::size_t>(1, frames.size() / kMostFrames);
-  const Eigen::Vector3d stiffness(1 / (kShapeSigmaAcross * kShapeSigmaAcross),
-                                  1 / (kShapeSigmaAcross * kShapeSigmaAcross),
-                                  1 / (kShapeSigmaDepth * kShapeSigmaDepth));
+  double most_frontal = kPi;
+  for (std::size_t f = 0; f < frames.size(); f += stride) {
+    if (frames[f] != nullptr) most_frontal = std::min(most_frontal, AngleToCamera(poses[f]));
+  }
+  double total = 0;
+  std::vector<double> frame_weight(frames.size(), 0);
+  for (std::size_t f = 0; f < frames.size(); f += stride) {
+    if (frames[f] == nullptr) continue;
+    const double off =
+        (AngleToCamera(poses[f]) - most_frontal) / RadiansFromDegrees(kFrontalWithinDeg);
+    total += frame_weight[f] = std::exp(-0.5 * off * off);
+  }
+  const Eigen::Vector3d stiffness = prior_sigma_mm.cwiseAbs2().cwiseInverse();
+  const double sigma_mm = kLandmarkSigma * PupilsOf(prior).distance();
+  std::vector<Eigen::Vector3d> head = prior;
   for (int round = 0; round < kRounds; ++round) {
-    double total = 0;
-    std::vector<double> frame_weight(frames.size(), 0);
-    for (std::size_t f = 0; f < frames.size(); f += stride) {
-      if (frames[f] == nullptr) continue;
-      const double angle = AngleToCamera(poses[f].camera_from_head) - most_frontal;
-      const double off = angle / RadiansFromDegrees(kFrontalWithinDeg);
-      total += frame_weight[f] = std::exp(-0.5 * off * off);
-    }
     for (std::size_t i = 0; i < head.size(); ++i) {
       Eigen::Matrix3d normal = stiffness.asDiagonal();
       Eigen::Vector3d right = stiffness.cwiseProduct(prior[i] - head[i]);
       for (std::size_t f = 0; f < frames.size(); f += stride) {
         if (frame_weight[f] <= 0) continue;
-        const Eigen::Isometry3d& pose = poses[f].camera_from_head;
-        const Eigen::Vector3d p = pose * head[i];
+        const Eigen::Vector3d p = poses[f] * head[i];
         const double px_per_mm = camera.fx / p.z();
-        const double sigma_px = kLandmarkSigma * pd_mm * px_per_mm;
+        const double sigma_px = sigma_mm * px_per_mm;
         Eigen::Matrix<double, 2, 3> by_point;
         by_point << px_per_mm, 0, -px_per_mm * p.x() / p.z(),  //
             0, px_per_mm, -px_per_mm * p.y() / p.z();
-        by_point *= pose.linear();
+        by_point *= poses[f].linear();
         const Eigen::Vector2d error = frames[f]->points[i].head<2>() - camera.Project(p);
         // The frames' errors are not independent: together they count as one.
         const double w = frame_weight[f] / total / (sigma_px * sigma_px) /
@@ -180,9 +179,25 @@ std::vector<Eigen::Vector3d> FitFace(const Camera& camera, const CanonicalMesh& 
       }
       head[i] += normal.ldlt().solve(right);
     }
+  }
+  return head;
+}
+
+std::vector<Eigen::Vector3d> FitFace(const Camera& camera, const CanonicalMesh& canonical,
+                                     const std::vector<const FaceLandmarks*>& frames, double pd_mm,
+                                     std::vector<Eigen::Isometry3d>& poses) {
+  const std::vector<Eigen::Vector3d> prior = CanonicalHead(canonical, pd_mm);
+  std::vector<Eigen::Vector3d> head = prior;
+  poses.assign(frames.size(), Eigen::Isometry3d::Identity());
+  for (int round = 0; round <= kRounds; ++round) {
+    for (std::size_t f = 0; f < frames.size(); ++f) {
+      if (frames[f] == nullptr) continue;
+      poses[f] = FitLandmarkPose(camera, head, canonical.rigid_weight, *frames[f]).camera_from_head;
+    }
+    if (round == kRounds) break;
+    head = ShapeFromLandmarks(camera, prior, kShapeSigmaMm, frames, poses);
     const Similarity aligned = HeadFromPoints(head, canonical, pd_mm);
     for (Eigen::Vector3d& p : head) p = aligned(p);
-    fit_poses(round + 1 < kRounds ? stride : 1);
   }
   return head;
 }

@@ -2,7 +2,7 @@
 // The personal face: 468 points in head space, and how head space is tied to them.
 #pragma once
 
-#include <Eigen/Core>
+#include <Eigen/Geometry>
 #include <optional>
 #include <vector>
 
@@ -27,6 +27,8 @@ struct Similarity {
   double scale = 1;
   Eigen::Matrix3d rotation = Eigen::Matrix3d::Identity();
   Eigen::Vector3d shift = Eigen::Vector3d::Zero();
+  // The same view of the head, in a world scaled alike.
+  Eigen::Isometry3d Rebased(const Eigen::Isometry3d& camera_from_point) const;
   Eigen::Vector3d operator()(const Eigen::Vector3d& p) const {
     return scale * (rotation * p) + shift;
   }
@@ -45,12 +47,21 @@ std::vector<Eigen::Vector3d> CanonicalHead(const CanonicalMesh& canonical, doubl
 PoseFit FitLandmarkPose(const Camera& camera, const std::vector<Eigen::Vector3d>& head,
                         const std::vector<double>& weights, const FaceLandmarks& landmarks);
 
-// Moves `head` to fit the landmarks of all frames (null: none) together with their poses, held to
-// the canonical face where they cannot tell; poses and points are refined in turn. Frames that look
-// straight at the camera count most, since the landmarks of a turned face slide over the skin.
-// Returns the points, in head space; `poses` come back fitted to them.
+// What the landmarks of a clip say of the face's shape, with the poses known.
+//   prior    the points where the landmarks cannot tell; prior_sigma_mm (across, up, depth)
+//   frames   null: no face; poses: one a frame
+// Frames that look straight at the camera count most, since the landmarks of a turned face slide
+// over the skin. Returns the points in the space of `prior`.
+std::vector<Eigen::Vector3d> ShapeFromLandmarks(const Camera& camera,
+                                                const std::vector<Eigen::Vector3d>& prior,
+                                                const Eigen::Vector3d& prior_sigma_mm,
+                                                const std::vector<const FaceLandmarks*>& frames,
+                                                const std::vector<Eigen::Isometry3d>& poses);
+
+// Shape and poses from landmarks alone, in turn, from the canonical face on. Returns the points in
+// head space; `poses` (identity without a face) come back fitted to them.
 std::vector<Eigen::Vector3d> FitFace(const Camera& camera, const CanonicalMesh& canonical,
                                      const std::vector<const FaceLandmarks*>& frames, double pd_mm,
-                                     std::vector<PoseFit>& poses);
+                                     std::vector<Eigen::Isometry3d>& poses);
 
 }  // namespace lorgnette

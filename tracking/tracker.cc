@@ -9,9 +9,8 @@
 #include <vector>
 
 #include "tracking/canonical_mesh.h"
+#include "tracking/clip_fit.h"
 #include "tracking/face_follower.h"
-#include "tracking/face_model.h"
-#include "tracking/focal_prior.h"
 #include "tracking/track_smoothing.h"
 
 namespace lorgnette {
@@ -68,25 +67,8 @@ Result<HeadTrack> Tracker::Finish() {
     return Failure(fmt::format("video: no face found in any of {} frames, want at least one",
                                s.frames.size()));
   }
-  HeadTrack track;
-  track.pd_mm = s.options.pd_mm;
-  const double focal_px = s.options.focal_px > 0
-                              ? s.options.focal_px
-                              : TypicalFocal(s.width, s.height, track.pd_mm, landmarks);
-  track.camera = {s.width, s.height, focal_px, focal_px, s.width / 2.0, s.height / 2.0};
-  std::vector<PoseFit> poses;
-  track.face = s.canonical.mesh;
-  track.face.positions = FitFace(track.camera, s.canonical, landmarks, track.pd_mm, poses);
-  ComputeVertexNormals(track.face);
-  const Pupils pupils = PupilsOf(track.face.positions);
-  track.pupil_right = pupils.right;
-  track.pupil_left = pupils.left;
-  for (std::size_t f = 0; f < s.frames.size(); ++f) {
-    TrackedFrame& out = track.frames.emplace_back();
-    out.time_s = s.frames[f].time_s;
-    out.found = landmarks[f] != nullptr;
-    out.camera_from_head = poses[f].camera_from_head;
-  }
+  HeadTrack track =
+      FitClip(s.frames, s.canonical, s.width, s.height, s.options.pd_mm, s.options.focal_px);
   std::vector<bool> cut_before;
   for (const FollowedFrame& frame : s.frames) cut_before.push_back(frame.cut_before);
   SmoothTrack(cut_before, track);

@@ -1,0 +1,239 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "tracking/anchored_clip.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "base/check.h"
+#include "base/units.h"
+#include "tracking/bundle.h"
+
+namespace lorgnette {
+namespace {
+
+constexpr double kViewSpacing = RadiansFromDegrees(8);
+constexpr double kViewReach = RadiansFromDegrees(12);  // weight of a view falls over this angle
+constexpr std::size_t kMostViews = 12;
+constexpr std::size_t kViewsPerFrame = 2;
+constexpr std::size_t kKeyFrames = 24;
+
+struct Sighting {
+  std::size_t view, anchor;
+  Eigen::Vector2d pixel;
+  double weight;
+};
+
+double AngleBetween(const Eigen::Isometry3d& a, const Eigen::Isometry3d& b) {
+  // Only the turn out of the picture plane changes what a patch looks like.
+  const double cosine = a.linear().col(2).dot(b.linear().col(2));
+  return std::acos(std::clamp(cosine, -1.0, 1.0));
+}
+
+class Anchorer {
+ public:
+  Anchorer(const AnchoringInput& input, const Camera& camera) : in_(input), camera_(camera) {}
+
+  void ChooseViews();
+  // All frames against their nearest views.
+  void MatchFrames();
+  double Bundle(double focal_log_sigma);
+  void FitPoses(AnchoredClip& clip) const;
+
+  const Camera& camera() const { return camera_; }
+  std::vector<AnchorView>& views() { return views_; }
+
+ private:
+  const Eigen::Isometry3d& Landmark(std::size_t f) const { return in_.landmark_poses[f]; }
+  bool Seen(std::size_t f) const { return in_.frames[f].landmarks.has_value(); }
+  // The views nearest to a frame, nearest first; `from` none.
+  std::vector<std::size_t> NearestViews(std::size_t f) const;
+  // The landmark pose, moved as the landmarks of the view were found to err.
+  Eigen::Isometry3d Guess(std::size_t f, std::size_t view) const;
+  std::vector<Sighting> Match(std::size_t f, Eigen::Isometry3d* pose) const;
+  PoseFit Fit(const std::vector<Sighting>& sightings, const Eigen::Isometry3d& guess,
+              double scale_px) const;
+  void AddView(std::size_t f, const Eigen::Isometry3d& pose);
+
+  const AnchoringInput& in_;
+  Camera camera_;
+  std::vector<AnchorView> views_;
+  std::vector<std::vector<Sighting>> sightings_;  // one a frame
+  std::vector<Eigen::Isometry3d> guesses_;
+};
+
+std::vector<std::size_t> Anchorer::NearestViews(std::size_t f) const {
+  std::vector<std::size_t> order(views_.size());
+  for (std::size_t v = 0; v < order.size(); ++v) order[v] = v;
+  const auto angle = [&](std::size_t v) {
+    return AngleBetween(Landmark(f), Landmark(views_[v].frame));
+  };
+  std::stable_sort(order.begin(), order.end(),
+                   [&](std::size_t a, std::size_t b) { return angle(a) < angle(b); });
+  order.resize(std::min(order.size(), kViewsPerFrame));
+  return order;
+}
+
+Eigen::Isometry3d Anchorer::Guess(std::size_t f, std::size_t view) const {
+  const AnchorView& v = views_[view];
+  return Moved(Landmark(f), MotionBetween(Landmark(v.frame), v.camera_from_head));
+}
+
+std::vector<Sighting> Anchorer::Match(std::size_t f, Eigen::Isometry3d* pose) const {
+  const TexturePyramid texture(in_.frames[f].crop.grey);
+  std::vector<Sighting> all;
+  for (const std::size_t v : NearestViews(f)) {
+    const auto match = MatchAnchors(views_[v], in_.frames[f].crop, texture, camera_, Guess(f, v));
+    if (!match) continue;
+    if (all.empty()) *pose = match->pose.camera_from_head;
+    const double off = AngleBetween(match->pose.camera_from_head, views_[v].camera_from_head);
+    const double trust = std::exp(-0.5 * std::pow(off / kViewReach, 2));
+    for (const AnchorSighting& s : match->sightings) {
+      all.push_back({v, s.anchor, s.pixel, trust * s.weight});
+    }
+  }
+  return all;
+}
+
+PoseFit Anchorer::Fit(const std::vector<Sighting>& sightings, const Eigen::Isometry3d& guess,
+                      double scale_px) const {
+  std::vector<PointSighting> points;
+  points.reserve(sightings.size());
+  for (const Sighting& s : sightings) {
+    points.push_back({views_[s.view].anchors[s.anchor].head, s.pixel, s.weight});
+  }
+  return FitPose(camera_, points, guess, scale_px);
+}
+
+void Anchorer::AddView(std::size_t f, const Eigen::Isometry3d& pose) {
+  const FollowedFrame& frame = in_.frames[f];
+  views_.push_back(MakeAnchorView(f, frame.crop, TexturePyramid(frame.crop.grey), camera_, pose,
+                                  in_.face, in_.rigid_weight));
+}
+
+void Anchorer::ChooseViews() {
+  // Head on, seen along the line to the face.
+  const auto off_axis = [&](std::size_t f) {
+    const Eigen::Isometry3d& pose = Landmark(f);
+    return std::acos(
+        std::clamp(-pose.linear().col(2).dot(pose.translation().normalized()), -1.0, 1.0));
+  };
+  std::vector<std::size_t> seen;
+  for (std::size_t f = 0; f < in_.frames.size(); ++f) {
+    if (Seen(f)) seen.push_back(f);
+  }
+  LG_CHECK(!seen.empty());
+  const std::size_t first =
+      *std::min_element(seen.begin(), seen.end(),
+                        [&](std::size_t a, std::size_t b) { return off_axis(a) < off_axis(b); });
+  AddView(first, Landmark(first));
+  // Then always the frame nearest to the views that is a step away from all of them, so that each
+  // new view is tied to its neighbour.
+  std::vector<std::size_t> candidates = seen;
+  while (views_.size() < kMostViews) {
+    const auto nearest = [&](std::size_t f) {
+      double angle = kPi;
+      for (const AnchorView& v : views_) {
+        angle = std::min(angle, AngleBetween(Landmark(f), Landmark(v.frame)));
+      }
+      return angle;
+    };
+    std::size_t best = 0;
+    double best_angle = kPi;
+    for (const std::size_t f : candidates) {
+      const double angle = nearest(f);
+      if (angle >= kViewSpacing && angle < best_angle) {
+        best = f;
+        best_angle = angle;
+      }
+    }
+    if (best_angle >= kPi) break;
+    candidates.erase(std::find(candidates.begin(), candidates.end(), best));
+    Eigen::Isometry3d pose;
+    const std::vector<Sighting> tied = Match(best, &pose);
+    if (tied.empty()) continue;
+    AddView(best, Fit(tied, pose, in_.frames[best].crop.region.side / 256).camera_from_head);
+  }
+}
+
+void Anchorer::MatchFrames() {
+  sightings_.assign(in_.frames.size(), {});
+  guesses_.assign(in_.frames.size(), Eigen::Isometry3d::Identity());
+  for (std::size_t f = 0; f < in_.frames.size(); ++f) {
+    if (Seen(f)) sightings_[f] = Match(f, &guesses_[f]);
+  }
+}
+
+double Anchorer::Bundle(double focal_log_sigma) {
+  // Key frames: the views and frames evenly spread over the clip.
+  std::vector<std::size_t> keys;
+  for (const AnchorView& view : views_) keys.push_back(view.frame);
+  std::vector<std::size_t> usable;
+  for (std::size_t f = 0; f < sightings_.size(); ++f) {
+    const bool is_view = std::find(keys.begin(), keys.end(), f) != keys.end();
+    if (!sightings_[f].empty() && !is_view) usable.push_back(f);
+  }
+  const std::size_t stride = std::max<std::size_t>(1, usable.size() / kKeyFrames);
+  for (std::size_t k = stride / 2; k < usable.size(); k += stride) keys.push_back(usable[k]);
+
+  std::vector<BundlePoint> points;
+  std::vector<std::size_t> first_point;
+  for (const AnchorView& view : views_) {
+    first_point.push_back(points.size());
+    for (const TextureAnchor& a : view.anchors) points.push_back({a.head, a.ray});
+  }
+  std::vector<BundleSighting> sightings;
+  std::vector<Eigen::Isometry3d> poses;
+  for (std::size_t k = 0; k < keys.size(); ++k) {
+    const std::size_t f = keys[k];
+    const bool is_view = k < views_.size();
+    poses.push_back(is_view ? views_[k].camera_from_head
+                            : Fit(sightings_[f], guesses_[f], 2).camera_from_head);
+    if (is_view) {
+      for (std::size_t a = 0; a < views_[k].anchors.size(); ++a) {
+        const Eigen::Vector3d p = poses[k] * views_[k].anchors[a].head;
+        sightings.push_back({k, first_point[k] + a, camera_.Project(p), 1});
+      }
+    }
+    for (const Sighting& s : sightings_[f]) {
+      if (is_view && s.view == k) continue;
+      sightings.push_back({k, first_point[s.view] + s.anchor, s.pixel, s.weight});
+    }
+  }
+  BundleOptions options;
+  options.focal_log_sigma = focal_log_sigma;
+  options.sigma_px = 0.3 * in_.frames[views_[0].frame].crop.region.side / 256;
+  const BundleReport report = FitBundle(sightings, options, camera_, poses, points);
+  if (!report.usable) return 0;
+  for (std::size_t v = 0; v < views_.size(); ++v) {
+    views_[v].camera_from_head = poses[v];
+    for (std::size_t a = 0; a < views_[v].anchors.size(); ++a) {
+      views_[v].anchors[a].head = points[first_point[v] + a].head;
+    }
+  }
+  return report.rms_px;
+}
+
+void Anchorer::FitPoses(AnchoredClip& clip) const {
+  clip.poses.assign(in_.frames.size(), std::nullopt);
+  for (std::size_t f = 0; f < in_.frames.size(); ++f) {
+    if (sightings_[f].empty()) continue;
+    const double px = in_.frames[f].crop.region.side / 256;
+    clip.poses[f] = Fit(sightings_[f], guesses_[f], px);
+  }
+}
+
+}  // namespace
+
+AnchoredClip AnchorClip(const AnchoringInput& input, double focal_log_sigma, Camera& camera) {
+  Anchorer anchorer(input, camera);
+  anchorer.ChooseViews();
+  anchorer.MatchFrames();
+  AnchoredClip clip;
+  clip.rms_px = anchorer.Bundle(focal_log_sigma);
+  anchorer.FitPoses(clip);
+  camera = anchorer.camera();
+  clip.views = std::move(anchorer.views());
+  return clip;
+}
+
+}  // namespace lorgnette

@@ -1,0 +1,163 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "tracking/clip_fit.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "base/check.h"
+#include "tracking/anchored_clip.h"
+#include "tracking/face_model.h"
+#include "tracking/focal_prior.h"
+
+namespace lorgnette {
+namespace {
+
+constexpr double kFocalLogSigma = 0.25;  // about the typical focal length
+// How far the shape may leave its prior once the anchors have told the depth (mm).
+const Eigen::Vector3d kShapeSigmaMm(20, 20, 1);
+constexpr double kFieldSigmaMm = 15;  // over which the anchors' depths are spread on the face
+constexpr double kMinFrontal = 0.4;   // z of an anchor's normal
+constexpr double kMostDepthMm = 12;
+constexpr double kNetworkYawSigma = 0.03;  // radians, of one reading about the common gain
+constexpr double kIndependentFrames = 10;
+constexpr double kFieldDoubt = 1;  // weight of no change, in anchors
+
+// Yaw of the face against the line from the camera to it: what the network sees.
+double ApparentYaw(const Eigen::Isometry3d& camera_from_head) {
+  const Eigen::Vector3d out = camera_from_head.linear().col(2);
+  const Eigen::Vector3d& at = camera_from_head.translation();
+  return std::atan2(out.x(), -out.z()) - std::atan2(-at.x(), at.z());
+}
+
+// Adds the depths that the anchors found to `points`, spread smoothly over the face.
+void ApplyAnchorDepths(const std::vector<AnchorView>& views, std::vector<Eigen::Vector3d>& points) {
+  struct Sample {
+    Eigen::Vector2d at;
+    double depth;
+  };
+  std::vector<Sample> samples;
+  for (const AnchorView& view : views) {
+    for (const TextureAnchor& a : view.anchors) {
+      if (a.normal.z() < kMinFrontal) continue;
+      // A slip along the surface does not change it; the rest is depth.
+      const double depth = (a.head - a.mesh).dot(a.normal) / a.normal.z();
+      samples.push_back({a.mesh.head<2>(), std::clamp(depth, -kMostDepthMm, kMostDepthMm)});
+    }
+  }
+  for (Eigen::Vector3d& p : points) {
+    double sum = 0, total = kFieldDoubt;
+    for (const Sample& s : samples) {
+      const double w =
+          std::exp(-0.5 * (s.at - p.head<2>()).squaredNorm() / (kFieldSigmaMm * kFieldSigmaMm));
+      sum += w * s.depth;
+      total += w;
+    }
+    p.z() += sum / total;
+  }
+}
+
+// Poses for frames that the anchors missed: the landmark pose, corrected as in the nearest frame
+// that they did not miss.
+std::vector<Eigen::Isometry3d> Completed(const std::vector<const FaceLandmarks*>& landmarks,
+                                         const std::vector<Eigen::Isometry3d>& landmark_poses,
+                                         const std::vector<std::optional<PoseFit>>& anchored) {
+  std::vector<Eigen::Isometry3d> poses = landmark_poses;
+  for (std::size_t f = 0; f < poses.size(); ++f) {
+    if (landmarks[f] == nullptr) continue;
+    if (anchored[f]) {
+      poses[f] = anchored[f]->camera_from_head;
+      continue;
+    }
+    for (std::size_t d = 1; d < poses.size(); ++d) {
+      const std::size_t before = f >= d ? f - d : f, after = f + d < poses.size() ? f + d : f;
+      const std::size_t n = anchored[before] ? before : after;
+      if (!anchored[n]) continue;
+      poses[f] =
+          Moved(landmark_poses[f], MotionBetween(landmark_poses[n], anchored[n]->camera_from_head));
+      break;
+    }
+  }
+  return poses;
+}
+
+}  // namespace
+
+double YawOffset(const std::vector<double>& texture, const std::vector<double>& network) {
+  LG_CHECK_EQ(texture.size(), network.size());
+  LG_CHECK(!texture.empty());
+  // network = gain * texture + shift, with a prior on the gain; neighbouring frames err alike, so
+  // that together they count as few.
+  const double count = double(texture.size());
+  double mean_t = 0, mean_n = 0;
+  for (std::size_t i = 0; i < texture.size(); ++i) {
+    mean_t += texture[i] / count;
+    mean_n += network[i] / count;
+  }
+  double tt = 0, tn = 0;
+  for (std::size_t i = 0; i < texture.size(); ++i) {
+    tt += (texture[i] - mean_t) * (texture[i] - mean_t) / count;
+    tn += (texture[i] - mean_t) * (network[i] - mean_n) / count;
+  }
+  const double data = kIndependentFrames / (kNetworkYawSigma * kNetworkYawSigma);
+  const double prior = 1 / (kNetworkYawGainSigma * kNetworkYawGainSigma);
+  const double gain = (data * tn + prior * kNetworkYawGain) / (data * tt + prior);
+  return mean_n / gain - mean_t;
+}
+
+HeadTrack FitClip(const std::vector<FollowedFrame>& frames, const CanonicalMesh& canonical,
+                  int width, int height, double pd_mm, double focal_px) {
+  std::vector<const FaceLandmarks*> landmarks;
+  for (const FollowedFrame& frame : frames) {
+    landmarks.push_back(frame.landmarks ? &*frame.landmarks : nullptr);
+  }
+  HeadTrack track;
+  track.pd_mm = pd_mm;
+  const bool calibrated = focal_px > 0;
+  if (!calibrated) focal_px = TypicalFocal(width, height, pd_mm, landmarks);
+  track.camera = {width, height, focal_px, focal_px, width / 2.0, height / 2.0};
+  track.face = canonical.mesh;
+
+  std::vector<Eigen::Isometry3d> landmark_poses;
+  std::vector<Eigen::Vector3d>& points = track.face.positions;
+  points = FitFace(track.camera, canonical, landmarks, pd_mm, landmark_poses);
+  ComputeVertexNormals(track.face);
+
+  const AnchoredClip anchored =
+      AnchorClip({frames, landmark_poses, track.face, canonical.rigid_weight},
+                 calibrated ? 0 : kFocalLogSigma, track.camera);
+  std::vector<Eigen::Isometry3d> poses = Completed(landmarks, landmark_poses, anchored.poses);
+
+  ApplyAnchorDepths(anchored.views, points);
+  points = ShapeFromLandmarks(track.camera, points, kShapeSigmaMm, landmarks, poses);
+  const Similarity head = HeadFromPoints(points, canonical, pd_mm);
+  for (Eigen::Vector3d& p : points) p = head(p);
+  for (Eigen::Isometry3d& pose : poses) pose = head.Rebased(pose);
+
+  const std::vector<Eigen::Vector3d> generic = CanonicalHead(canonical, pd_mm);
+  std::vector<double> texture_yaw, network_yaw;
+  for (std::size_t f = 0; f < frames.size(); ++f) {
+    if (landmarks[f] == nullptr) continue;
+    const PoseFit fit =
+        FitLandmarkPose(track.camera, generic, canonical.rigid_weight, *landmarks[f]);
+    network_yaw.push_back(ApparentYaw(fit.camera_from_head));
+    texture_yaw.push_back(ApparentYaw(poses[f]));
+  }
+  Similarity turn;
+  turn.rotation = Eigen::AngleAxisd(-YawOffset(texture_yaw, network_yaw), Eigen::Vector3d::UnitY())
+                      .toRotationMatrix();
+  for (Eigen::Vector3d& p : points) p = turn(p);
+  for (Eigen::Isometry3d& pose : poses) pose = turn.Rebased(pose);
+  ComputeVertexNormals(track.face);
+  const Pupils pupils = PupilsOf(points);
+  track.pupil_right = pupils.right;
+  track.pupil_left = pupils.left;
+  for (std::size_t f = 0; f < frames.size(); ++f) {
+    TrackedFrame& out = track.frames.emplace_back();
+    out.time_s = frames[f].time_s;
+    out.found = landmarks[f] != nullptr;
+    out.camera_from_head = poses[f];
+  }
+  return track;
+}
+
+}  // namespace lorgnette
