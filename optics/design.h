@@ -9,12 +9,11 @@
 #include "base/result.h"
 #include "base/units.h"
 #include "optics/back_surface.h"
+#include "optics/front_form.h"
 #include "optics/lens.h"
 #include "optics/prescription.h"
 
 namespace lorgnette {
-
-enum class Eye { kRight, kLeft };
 
 // Everything that fixes one lens. Contour points are in the lens frame's x, y (optics/ray.h: +x
 // toward the wearer's right, +y up), relative to the optical centre.

@@ -28,7 +28,7 @@ struct SurfaceHit {
 class Surface {
  public:
   using Shape = std::variant<SphereSurface, TorusSurface, ConicSurface, AtoroidSurface,
-                             ProgressiveSurface, GridSurface>;
+                             ProgressiveSurface, BifocalSurface, GridSurface>;
   Surface() = default;
   template <typename S>
   requires std::constructible_from<Shape, S> &&

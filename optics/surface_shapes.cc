@@ -3,6 +3,8 @@
 
 #include <cmath>
 
+#include "base/check.h"
+
 namespace lorgnette {
 namespace {
 
@@ -136,8 +138,50 @@ std::optional<SurfaceJet> JetOf(const AtoroidSurface& s, double x, double y) {
   return jet ? std::optional(RotatedJet(*jet, si, co)) : std::nullopt;
 }
 
-// --- progressive
-// ----------------------------------------------------------------------------------
+BifocalSurface::Frame BifocalSurface::SegmentFrame() const {
+  const auto main = JetOf(SphereSurface{curvature}, center.x(), center.y());
+  LG_CHECK(main.has_value());
+  const Eigen::Vector3d normal = Eigen::Vector3d(-main->zx, -main->zy, 1).normalized();
+  double rise = 0;
+  if (radius > 0) {
+    const auto own = JetOf(SphereSurface{curvature_segment}, radius, 0);
+    const auto around = JetOf(SphereSurface{curvature}, radius, 0);
+    LG_CHECK(own.has_value() && around.has_value());
+    rise = own->z - around->z;
+  }
+  return {Eigen::Vector3d(center.x(), center.y(), main->z) - rise * normal, normal};
+}
+
+bool BifocalSurface::Holds(const Frame& frame, const Eigen::Vector3d& point) const {
+  if (point.y() > center.y() + top) return false;
+  if (radius == 0) return true;
+  const Eigen::Vector3d d = point - frame.vertex;
+  return (d - d.dot(frame.normal) * frame.normal).squaredNorm() < radius * radius;
+}
+
+std::optional<SurfaceJet> JetOf(const BifocalSurface& s, double x, double y) {
+  const auto main = JetOf(SphereSurface{s.curvature}, x, y);
+  if (y > s.center.y() + s.top) return main;
+  // The segment's sphere c |q - V|^2 = 2 N . (q - V) as a graph over (x, y).
+  const BifocalSurface::Frame frame = s.SegmentFrame();
+  const Eigen::Vector3d& n = frame.normal;
+  const double c = s.curvature_segment;
+  const double dx = x - frame.vertex.x(), dy = y - frame.vertex.y();
+  const double h = c * (dx * dx + dy * dy) - 2 * (n.x() * dx + n.y() * dy);
+  const double disc = n.z() * n.z() - c * h;
+  if (!(disc > 0)) return s.radius == 0 ? std::nullopt : main;
+  const double w = h / (n.z() + std::sqrt(disc));
+  if (!s.Holds(frame, {x, y, frame.vertex.z() + w})) return main;
+  const double d = n.z() - c * w;
+  SurfaceJet jet;
+  jet.z = frame.vertex.z() + w;
+  jet.zx = (c * dx - n.x()) / d;
+  jet.zy = (c * dy - n.y()) / d;
+  jet.zxx = c * (1 + jet.zx * jet.zx) / d;
+  jet.zxy = c * jet.zx * jet.zy / d;
+  jet.zyy = c * (1 + jet.zy * jet.zy) / d;
+  return jet;
+}
 
 struct ProgressiveSurface::Meridian {
   double curvature, curvature1, curvature2;  // of the umbilic, derivatives by y

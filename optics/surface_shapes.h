@@ -75,6 +75,25 @@ class ProgressiveSurface {
   double corridor_end_sag_ = 0;  // sag at the lower end of the corridor
 };
 
+// A sphere with a segment of another curvature: round, flat-topped, or everything below a line. The
+// segment's sphere shares the main sphere's normal over `center`, its optical centre, and is raised
+// so that both meet along the circle of `radius` about that normal (no rise where there is no
+// circle). Across the top line the surface has a ledge: the graph jumps there.
+struct BifocalSurface {
+  double curvature = 0, curvature_segment = 0;  // 1/mm
+  Eigen::Vector2d center{0, 0};                 // mm, in (x, y)
+  double radius = 0;                            // mm; 0: the segment has no lower boundary
+  double top = 0;                               // the segment ends at y = center.y + top
+
+  // The segment's sphere: a point of it over `center`, and the common normal there (toward +z).
+  struct Frame {
+    Eigen::Vector3d vertex, normal;
+  };
+  Frame SegmentFrame() const;
+  // Whether a point of the segment's sphere belongs to the segment.
+  bool Holds(const Frame& frame, const Eigen::Vector3d& point) const;
+};
+
 // Bicubic B-spline over a regular grid, on top of a sphere: C2, exact for cubics. Node (i, j) lies
 // at (x0 + i pitch_x, y0 + j pitch_y); coefficients carry one more row and column on every side.
 struct SplineGrid {
@@ -97,6 +116,7 @@ std::optional<SurfaceJet> JetOf(const TorusSurface& s, double x, double y);
 std::optional<SurfaceJet> JetOf(const ConicSurface& s, double x, double y);
 std::optional<SurfaceJet> JetOf(const AtoroidSurface& s, double x, double y);
 std::optional<SurfaceJet> JetOf(const ProgressiveSurface& s, double x, double y);
+std::optional<SurfaceJet> JetOf(const BifocalSurface& s, double x, double y);
 std::optional<SurfaceJet> JetOf(const GridSurface& s, double x, double y);
 
 // A jet known in axes (u, v) with v = (co, si) and u = (si, -co), expressed in (x, y).
