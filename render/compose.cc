@@ -192,6 +192,7 @@ Result<ComposeCase> ReadComposeCase(const std::string& path) {
   options.shadow_directions = 2048;
   options.shadow_spacing_mm = 0.75;
   options.max_internal_bounces = 12;
+  options.least_weight = 0.001;
   options.edge = EdgeFinish::kPolished;
   options.fade_temples = false;
   options.world_from_camera = camera_from_world.rotation().transpose();

@@ -6,13 +6,14 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <mutex>
 
 #include "base/check.h"
 #include "base/units.h"
 #include "optics/trace.h"
 #include "render/head_scene.h"
 #include "render/ray_follower.h"
+#include "render/tile_mask.h"
+#include "render/tile_renderer.h"
 
 namespace lorgnette {
 namespace {
@@ -34,6 +35,75 @@ std::optional<Entry> FirstGlass(const HeadScene& head, const Ray& ray) {
     if (hit && (!nearest || hit->distance < nearest->hit.distance)) nearest = Entry{i, local, *hit};
   }
   return nearest;
+}
+
+// What the samples of one pixel sum to.
+struct PixelSum {
+  Eigen::Vector3f inserted{0, 0, 0}, direct{0, 0, 0};
+  bool lens = false, frame = false, changed = false;
+
+  void Add(const CameraSample& s, float share) {
+    using Kind = CameraSample::Kind;
+    const bool through = s.kind == Kind::kLensToHead || s.kind == Kind::kLensElsewhere;
+    lens |= through;
+    frame |= s.kind == Kind::kFrame;
+    changed |= through || s.kind == Kind::kFrame || (s.direct.array() != 1.0f).any();
+    inserted += share * s.inserted;
+    direct += share * s.direct;
+  }
+};
+
+// A tile's pixels of the picture: rectangle of at most kTileSide a side.
+struct TileArea {
+  int x0, y0, x1, y1;
+};
+
+// Samples of the pixels that `wanted` names (all of them when it is empty), side x side a pixel,
+// those of one place inside their pixels together.
+void PlaceSamples(const TileArea& area, int side, const std::vector<bool>& wanted,
+                  std::vector<CameraSample>& samples) {
+  samples.clear();
+  for (int s = 0; s < side * side; ++s) {
+    const float dx = (float(s % side) + 0.5f) / float(side);
+    const float dy = (float(s / side) + 0.5f) / float(side);
+    // Blocks of 4 x 4 pixels: one packet.
+    for (int by = area.y0; by < area.y1; by += 4) {
+      for (int bx = area.x0; bx < area.x1; bx += 4) {
+        for (int y = by; y < std::min(by + 4, area.y1); ++y) {
+          for (int x = bx; x < std::min(bx + 4, area.x1); ++x) {
+            const int pixel = (y - area.y0) * kTileSide + (x - area.x0);
+            if (!wanted.empty() && !wanted[std::size_t(pixel)]) continue;
+            CameraSample sample;
+            sample.x = float(x) + dx;
+            sample.y = float(y) + dy;
+            sample.pixel = std::uint16_t(pixel);
+            samples.push_back(sample);
+          }
+        }
+      }
+    }
+  }
+}
+
+// Pixels on the frame, and those whose neighbourhood meets different things.
+std::vector<bool> PixelsToRefine(const TileArea& area, int width, int height,
+                                 const std::vector<CameraSample::Kind>& kinds) {
+  std::vector<bool> wanted(std::size_t(kTileSide) * kTileSide, false);
+  const auto kind = [&](int x, int y) {
+    return kinds[std::size_t(std::clamp(y, 0, height - 1)) * std::size_t(width) +
+                 std::size_t(std::clamp(x, 0, width - 1))];
+  };
+  for (int y = area.y0; y < area.y1; ++y) {
+    for (int x = area.x0; x < area.x1; ++x) {
+      const CameraSample::Kind own = kind(x, y);
+      bool refine = own == CameraSample::Kind::kFrame || own == CameraSample::Kind::kLensElsewhere;
+      for (int dy = -1; dy <= 1 && !refine; ++dy) {
+        for (int dx = -1; dx <= 1 && !refine; ++dx) refine = kind(x + dx, y + dy) != own;
+      }
+      wanted[std::size_t((y - area.y0) * kTileSide + (x - area.x0))] = refine;
+    }
+  }
+  return wanted;
 }
 
 }  // namespace
@@ -71,71 +141,85 @@ ImageRgbF Compositor::Render(const ImageRgbF& input, const Camera& camera,
   LG_CHECK_EQ(input.height, camera.height);
   const HeadScene& head = scene_->head;
   const RayFollower follower(head, input, camera, camera_from_head);
-  const Eigen::Isometry3d head_from_camera = camera_from_head.inverse();
-  const Eigen::Vector3d eye = head_from_camera.translation();
+  const TileRenderer renderer(head, follower, camera, camera_from_head);
+  const TileMask mask = MarkTiles(head, camera, camera_from_head);
   const int side = head.options.samples_per_side;
-  const float share = 1.0f / float(side * side);
+  const bool adaptive = head.options.adaptive && side > 1;
 
   ImageRgbF output = input;
-  RenderCounts total;
-  std::mutex mutex;
-  tbb::parallel_for(0, input.height, [&](int row) {
-    RenderCounts here;
-    for (int column = 0; column < input.width; ++column) {
-      PixelState pixel;
-      pixel.seed = std::uint32_t(row) * 7919u + std::uint32_t(column) * 104729u;
-      const Eigen::Map<const Eigen::Vector3f> own(input.at(column, row));
-      Eigen::Vector3f inserted = Eigen::Vector3f::Zero();
-      float direct = 0;  // share of the pixel that sees the head or background as before
-      std::optional<Eigen::Vector3f> ratio;
-      bool lens = false, frame = false;
-      for (int s = 0; s < side * side; ++s) {
-        const double x = column + (s % side + 0.5) / side, y = row + (s / side + 0.5) / side;
-        const Ray ray{eye, (head_from_camera.linear() * camera.Direction(x, y)).normalized()};
-        const Eigen::Vector3f origin = ray.origin.cast<float>();
-        const Eigen::Vector3f direction = ray.direction.cast<float>();
-        const SceneHit hit = head.scene.Intersect(RaySet::kAll, origin, direction, 0, kInfinity);
-        const auto glass = FirstGlass(head, ray);
-        if (glass && (!hit.hit() || glass->hit.distance < double(hit.distance))) {
-          lens = true;
-          inserted += share * follower.EnterGlass(glass->lens, glass->ray, glass->hit, 1, 0, pixel);
-          continue;
-        }
-        float opacity = 0;
-        SceneHit skin = hit;
-        Eigen::Vector3f point = origin + hit.distance * direction;
-        if (hit.object == SceneObject::kFrame) {
-          opacity = follower.FrameOpacity(hit, point);
-          if (opacity > 0) {
-            frame = true;
-            inserted += share * opacity * follower.Frame(hit, point, direction);
-          }
-          if (opacity < 1) {
-            skin = head.scene.Intersect(RaySet::kHead, origin, direction, 0, kInfinity);
-            point = origin + skin.distance * direction;
-          }
-        }
-        direct += share * (1 - opacity);
-        if (opacity < 1 && !ratio && skin.hit()) ratio = follower.FaceRatio(skin, point, pixel);
-      }
-      const bool shadowed = ratio && (ratio->array() != 1.0f).any();
-      here.lens_pixels += lens;
-      here.frame_pixels += frame;
-      here.shadowed_pixels += shadowed && direct > 0;
-      here.filled_samples += pixel.filled;
-      if (!lens && !frame && !shadowed) continue;
-      Eigen::Vector3f value = direct * own;
-      if (shadowed) value = value.cwiseProduct(*ratio);
-      value += inserted;
-      std::copy(value.data(), value.data() + 3, output.at(column, row));
+  std::vector<RenderCounts> counts_of(mask.content.size());
+  // Adaptive: what the ray through each pixel's centre met.
+  std::vector<CameraSample::Kind> kinds;
+  if (adaptive) {
+    kinds.assign(std::size_t(input.width) * std::size_t(input.height),
+                 CameraSample::Kind::kBackground);
+  }
+  const auto render_tile = [&](std::size_t tile, bool refine) {
+    const std::uint8_t content = mask.content[tile];
+    if (content == 0) return;
+    const int column = int(tile) % mask.columns, row = int(tile) / mask.columns;
+    const TileArea area{column * kTileSide, row * kTileSide,
+                        std::min((column + 1) * kTileSide, input.width),
+                        std::min((row + 1) * kTileSide, input.height)};
+    std::vector<bool> wanted;
+    if (refine) {
+      if (content == kTileShadow) return;
+      wanted = PixelsToRefine(area, input.width, input.height, kinds);
+      if (std::find(wanted.begin(), wanted.end(), true) == wanted.end()) return;
     }
-    const std::lock_guard lock(mutex);
-    total.lens_pixels += here.lens_pixels;
-    total.frame_pixels += here.frame_pixels;
-    total.shadowed_pixels += here.shadowed_pixels;
-    total.filled_samples += here.filled_samples;
-  });
-  if (counts != nullptr) *counts = total;
+    // The face's own pixels need no second sample: equation (2) is taken once a pixel.
+    const int here = content == kTileShadow || (adaptive && !refine) ? 1 : side;
+    thread_local std::vector<CameraSample> samples;
+    PlaceSamples(area, here, wanted, samples);
+    std::vector<PixelState> states(std::size_t(kTileSide) * kTileSide);
+    for (const CameraSample& s : samples) {
+      const std::uint32_t x = std::uint32_t(s.x), y = std::uint32_t(s.y);
+      states[s.pixel].seed = y * 7919u + x * 104729u;
+    }
+    renderer.Trace(samples, content, states);
+    std::vector<PixelSum> sums(states.size());
+    const float share = 1.0f / float(here * here);
+    for (const CameraSample& s : samples) sums[s.pixel].Add(s, share);
+    RenderCounts& count = counts_of[tile];
+    for (int y = area.y0; y < area.y1; ++y) {
+      for (int x = area.x0; x < area.x1; ++x) {
+        const std::size_t pixel = std::size_t((y - area.y0) * kTileSide + (x - area.x0));
+        if (!wanted.empty() && !wanted[pixel]) continue;
+        const PixelSum& sum = sums[pixel];
+        if (!refine) {
+          count.lens_pixels += sum.lens;
+          count.frame_pixels += sum.frame;
+          count.shadowed_pixels += sum.changed && !sum.lens && !sum.frame;
+        }
+        count.filled_samples += states[pixel].filled;
+        float* out = output.at(x, y);
+        const float* own = input.at(x, y);
+        for (int c = 0; c < 3; ++c) {
+          out[c] = sum.changed ? sum.inserted[c] + sum.direct[c] * own[c] : own[c];
+        }
+      }
+    }
+    if (adaptive && !refine) {
+      for (const CameraSample& s : samples) {
+        kinds[std::size_t(s.y) * std::size_t(input.width) + std::size_t(s.x)] = s.kind;
+      }
+    }
+  };
+  tbb::parallel_for(std::size_t(0), mask.content.size(),
+                    [&](std::size_t tile) { render_tile(tile, false); });
+  if (adaptive) {
+    tbb::parallel_for(std::size_t(0), mask.content.size(),
+                      [&](std::size_t tile) { render_tile(tile, true); });
+  }
+  if (counts != nullptr) {
+    *counts = {};
+    for (const RenderCounts& c : counts_of) {
+      counts->lens_pixels += c.lens_pixels;
+      counts->frame_pixels += c.frame_pixels;
+      counts->shadowed_pixels += c.shadowed_pixels;
+      counts->filled_samples += c.filled_samples;
+    }
+  }
   return output;
 }
 
@@ -176,7 +260,7 @@ ImageRgbaF Compositor::HitMap(const Camera& camera,
         continue;
       }
       const auto exit = leave ? Refract(inside.direction, leave->normal, index) : std::nullopt;
-      if (!exit || glass->hit.face == LensFace::kWall || leave->face == LensFace::kWall ||
+      if (!exit || glass->hit.face == SolidFace::kWall || leave->face == SolidFace::kWall ||
           leave->face == glass->hit.face) {
         write(HitCode::kEdge);
         continue;

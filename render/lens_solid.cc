@@ -138,7 +138,7 @@ LensSolid::LensSolid(const Lens& lens, const std::vector<Eigen::Vector2d>& conto
   double low = 0, high = lens.center_thickness_mm;
   for (const Eigen::Vector2d& p : contour_.polygon()) {
     for (const double s : {0.0, 0.25, 0.5, 0.75, 1.0}) {
-      for (const LensFace face : {LensFace::kFront, LensFace::kBack}) {
+      for (const SolidFace face : {SolidFace::kFront, SolidFace::kBack}) {
         if (const auto z = FaceHeight(face, s * p.x(), s * p.y())) {
           low = std::min(low, *z);
           high = std::max(high, *z);
@@ -152,8 +152,8 @@ LensSolid::LensSolid(const Lens& lens, const std::vector<Eigen::Vector2d>& conto
 }
 
 // First crossing of one face's surface, inside the contour, in (kStart_mm, t_max).
-std::optional<SolidHit> LensSolid::CrossFace(LensFace face, const Ray& ray, double t_max) const {
-  const bool back = face == LensFace::kBack;
+std::optional<SolidHit> LensSolid::CrossFace(SolidFace face, const Ray& ray, double t_max) const {
+  const bool back = face == SolidFace::kBack;
   Ray own = ray;
   if (back) {
     own.origin.z() -= lens_.center_thickness_mm;
@@ -175,8 +175,8 @@ std::optional<SolidHit> LensSolid::CrossFace(LensFace face, const Ray& ray, doub
 }
 
 // z of a face above (x, y); nullopt outside its domain.
-std::optional<double> LensSolid::FaceHeight(LensFace face, double x, double y) const {
-  if (face == LensFace::kFront) {
+std::optional<double> LensSolid::FaceHeight(SolidFace face, double x, double y) const {
+  if (face == SolidFace::kFront) {
     const auto jet = lens_.front.Jet(x, y);
     return jet ? std::optional<double>(jet->z) : std::nullopt;
   }
@@ -202,19 +202,19 @@ std::optional<SolidHit> LensSolid::Enter(const Ray& ray) const {
       t_max = hit->distance;
     }
   };
-  take(CrossFace(LensFace::kFront, near, t_max));
-  take(CrossFace(LensFace::kBack, near, t_max));
+  take(CrossFace(SolidFace::kFront, near, t_max));
+  take(CrossFace(SolidFace::kBack, near, t_max));
   // The wall, only when the ray comes from outside the cylinder over the contour.
   if (!contour_.Contains(near.origin.x(), near.origin.y())) {
     double t_min = kStart_mm;
     while (const auto crossing = contour_.FirstCrossing(near.origin.head<2>(),
                                                         near.direction.head<2>(), t_min, t_max)) {
       const Eigen::Vector3d point = near.origin + crossing->t * near.direction;
-      const auto front = FaceHeight(LensFace::kFront, point.x(), point.y());
-      const auto back = FaceHeight(LensFace::kBack, point.x(), point.y());
+      const auto front = FaceHeight(SolidFace::kFront, point.x(), point.y());
+      const auto back = FaceHeight(SolidFace::kBack, point.x(), point.y());
       if (front && back && point.z() >= *front && point.z() <= *back) {
         take(SolidHit{
-            LensFace::kWall, crossing->t, point, {crossing->normal.x(), crossing->normal.y(), 0}});
+            SolidFace::kWall, crossing->t, point, {crossing->normal.x(), crossing->normal.y(), 0}});
         break;
       }
       t_min = crossing->t + kStart_mm;
@@ -233,13 +233,13 @@ std::optional<SolidHit> LensSolid::Leave(const Ray& ray) const {
       t_max = hit->distance;
     }
   };
-  take(CrossFace(LensFace::kFront, ray, t_max));
-  take(CrossFace(LensFace::kBack, ray, t_max));
+  take(CrossFace(SolidFace::kFront, ray, t_max));
+  take(CrossFace(SolidFace::kBack, ray, t_max));
   const double reach = t_max * ray.direction.head<2>().norm();
   if (contour_.Clearance(ray.origin.x(), ray.origin.y()) < reach) {
     if (const auto crossing = contour_.FirstCrossing(ray.origin.head<2>(), ray.direction.head<2>(),
                                                      kStart_mm, t_max)) {
-      take(SolidHit{LensFace::kWall,
+      take(SolidHit{SolidFace::kWall,
                     crossing->t,
                     ray.origin + crossing->t * ray.direction,
                     {crossing->normal.x(), crossing->normal.y(), 0}});

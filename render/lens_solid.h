@@ -17,10 +17,10 @@
 
 namespace lorgnette {
 
-enum class LensFace { kFront, kBack, kWall };
+enum class SolidFace { kFront, kBack, kWall };
 
 struct SolidHit {
-  LensFace face = LensFace::kFront;
+  SolidFace face = SolidFace::kFront;
   double distance = 0;     // mm along the ray
   Eigen::Vector3d point;   // lens frame
   Eigen::Vector3d normal;  // unit, out of the glass
@@ -49,8 +49,8 @@ class LensSolid {
   static constexpr double kStart_mm = 1e-7;
 
  private:
-  std::optional<SolidHit> CrossFace(LensFace face, const Ray& ray, double t_max) const;
-  std::optional<double> FaceHeight(LensFace face, double x, double y) const;
+  std::optional<SolidHit> CrossFace(SolidFace face, const Ray& ray, double t_max) const;
+  std::optional<double> FaceHeight(SolidFace face, double x, double y) const;
 
   Lens lens_;
   ContourIndex contour_;

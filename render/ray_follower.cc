@@ -11,8 +11,6 @@
 namespace lorgnette {
 namespace {
 
-// A branch that carries less of its pixel is not followed; its share goes to the other branch.
-constexpr double kLeastWeight = 1.5e-3;
 // A ground edge scatters what reaches it; about half of a matt wall's light comes back.
 constexpr float kGroundEdgeAlbedo = 0.5f;
 constexpr float kInfinity = std::numeric_limits<float>::infinity();
@@ -32,6 +30,27 @@ double BackgroundDepth(const CompositorOptions& options,
                                               options.background_distance_mm);
 }
 
+// Whether the pictures of the two lenses touch, with room for what refraction adds.
+bool LensesOverlap(const HeadScene& head, const Camera& camera,
+                   const Eigen::Isometry3d& camera_from_head) {
+  if (head.lenses.size() < 2) return false;
+  double low[2], high[2];
+  for (std::size_t i = 0; i < 2; ++i) {
+    low[i] = std::numeric_limits<double>::infinity();
+    high[i] = -low[i];
+    for (const Eigen::Vector2d& p : head.lenses[i].contour().polygon()) {
+      const Eigen::Vector3d q =
+          camera_from_head * head.lenses[i].head_from_lens() * Eigen::Vector3d(p.x(), p.y(), 0);
+      if (q.z() <= 1) return true;
+      const double x = camera.Project(q).x();
+      low[i] = std::min(low[i], x);
+      high[i] = std::max(high[i], x);
+    }
+  }
+  const double room = 0.1 * std::max(high[0] - low[0], high[1] - low[1]);
+  return low[0] < high[1] + room && low[1] < high[0] + room;
+}
+
 }  // namespace
 
 RayFollower::RayFollower(const HeadScene& head, const ImageRgbF& input, const Camera& camera,
@@ -45,6 +64,7 @@ RayFollower::RayFollower(const HeadScene& head, const ImageRgbF& input, const Ca
       LightAt(head.directions, head.cells, world_from_head_, float(head.options.environment_scale));
   if (head.baked_shadow) ratios_ = head.baked_shadow->Relight(light);
   frame_irradiance_ = head.frame_light.Relight(light, picture_.face_mean());
+  lenses_overlap_ = LensesOverlap(head, camera, camera_from_head);
 }
 
 Eigen::Vector3f RayFollower::EnvironmentLight(const Eigen::Vector3f& direction) const {
@@ -121,28 +141,33 @@ Eigen::Vector3f RayFollower::Miss(const Eigen::Vector3f& origin, const Eigen::Ve
   return EnvironmentLight(direction);
 }
 
+std::optional<RayFollower::Entry> RayFollower::FirstGlass(const Ray& ray) const {
+  std::optional<Entry> nearest;
+  for (std::size_t i = 0; i < head_.lenses.size(); ++i) {
+    const Ray local = Transformed(head_.lenses[i].lens_from_head(), ray);
+    const auto hit = head_.lenses[i].Enter(local);
+    if (hit && (!nearest || hit->distance < nearest->hit.distance)) nearest = Entry{i, local, *hit};
+  }
+  return nearest;
+}
+
 Eigen::Vector3f RayFollower::Outside(const Ray& ray, double weight, int bounces, bool transmitted,
                                      PixelState& pixel) const {
   const Eigen::Vector3f origin = ray.origin.cast<float>();
   const Eigen::Vector3f direction = ray.direction.cast<float>();
   const SceneHit hit = head_.scene.Intersect(RaySet::kAll, origin, direction, 0, kInfinity);
   if (bounces <= head_.options.max_internal_bounces) {
-    std::optional<SolidHit> nearest;
-    std::size_t nearest_lens = 0;
-    Ray nearest_ray;
-    for (std::size_t i = 0; i < head_.lenses.size(); ++i) {
-      const Ray local = Transformed(head_.lenses[i].lens_from_head(), ray);
-      const auto entry = head_.lenses[i].Enter(local);
-      if (entry && (!nearest || entry->distance < nearest->distance)) {
-        nearest = entry;
-        nearest_lens = i;
-        nearest_ray = local;
-      }
-    }
-    if (nearest && (!hit.hit() || nearest->distance < double(hit.distance))) {
-      return EnterGlass(nearest_lens, nearest_ray, *nearest, weight, bounces + 1, pixel);
+    const auto glass = FirstGlass(ray);
+    if (glass && (!hit.hit() || glass->hit.distance < double(hit.distance))) {
+      return EnterGlass(glass->lens, glass->ray, glass->hit, weight, bounces + 1, pixel);
     }
   }
+  return AtHit(hit, origin, direction, transmitted, pixel);
+}
+
+Eigen::Vector3f RayFollower::AtHit(const SceneHit& hit, const Eigen::Vector3f& origin,
+                                   const Eigen::Vector3f& direction, bool transmitted,
+                                   PixelState& pixel) const {
   if (!hit.hit()) return Miss(origin, direction, transmitted, pixel);
   const Eigen::Vector3f point = origin + hit.distance * direction;
   if (hit.object != SceneObject::kFrame) return Head(hit, point, pixel);
@@ -165,7 +190,7 @@ Eigen::Vector3f RayFollower::EnterGlass(std::size_t lens, const Ray& ray, const 
       head_.options.reflection
           ? FresnelReflectance(std::min(-hit.normal.dot(ray.direction), 1.0), 1 / index)
           : 0;
-  if (weight * reflected < kLeastWeight) reflected = 0;
+  if (weight * reflected < head_.options.least_weight) reflected = 0;
   Eigen::Vector3f colour = Eigen::Vector3f::Zero();
   if (reflected > 0) {
     const Ray mirrored{hit.point, Reflect(ray.direction, hit.normal)};
@@ -196,7 +221,7 @@ Eigen::Vector3f RayFollower::Inside(std::size_t lens, const Ray& ray, double wei
         head_.scene.Intersect(RaySet::kFrame, origin, direction, 0, float(hit->distance));
     if (rim.hit()) return Frame(rim, origin + rim.distance * direction, direction);
   }
-  if (hit->face == LensFace::kWall && head_.options.edge == EdgeFinish::kGround) {
+  if (hit->face == SolidFace::kWall && head_.options.edge == EdgeFinish::kGround) {
     return kGroundEdgeAlbedo * float(head_.options.environment_scale) * head_.environment_mean;
   }
   const double index = solid.lens().medium.index_d;
@@ -210,8 +235,8 @@ Eigen::Vector3f RayFollower::Inside(std::size_t lens, const Ray& ray, double wei
   } else {
     reflected = head_.options.reflection ? FresnelReflectance(cosine, 1 / index) : 0;
   }
-  const bool follow =
-      bounces <= head_.options.max_internal_bounces && weight * reflected >= kLeastWeight;
+  const bool follow = bounces <= head_.options.max_internal_bounces &&
+                      weight * reflected >= head_.options.least_weight;
   if (!follow && out) reflected = 0;
   Eigen::Vector3f colour = Eigen::Vector3f::Zero();
   if (follow && reflected > 0) {

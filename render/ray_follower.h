@@ -26,6 +26,16 @@ class RayFollower {
 
   const PictureView& picture() const { return picture_; }
 
+  // First glass on a ray of head space that starts outside.
+  struct Entry {
+    std::size_t lens;
+    Ray ray;  // lens frame
+    SolidHit hit;
+  };
+  std::optional<Entry> FirstGlass(const Ray& ray) const;
+  // Whether light can pass through both lenses on its way to this camera.
+  bool lenses_overlap() const { return lenses_overlap_; }
+
   // Radiance along a ray (head space, unit direction) that starts outside all glass.
   //   weight       share of the pixel, for leaving out what cannot be seen
   //   transmitted  the ray left a lens by refraction: where it misses the head it sees the
@@ -36,24 +46,31 @@ class RayFollower {
   Eigen::Vector3f EnterGlass(std::size_t lens, const Ray& ray, const SolidHit& hit, double weight,
                              int bounces, PixelState& pixel) const;
 
+  // The same from a point inside a lens or on its boundary, heading in (lens frame).
+  Eigen::Vector3f Inside(std::size_t lens, const Ray& ray, double weight, int bounces,
+                         PixelState& pixel) const;
+  // What a ray outside all glass meets at `hit`, or past everything when it hit nothing.
+  Eigen::Vector3f AtHit(const SceneHit& hit, const Eigen::Vector3f& origin,
+                        const Eigen::Vector3f& direction, bool transmitted,
+                        PixelState& pixel) const;
+
   Eigen::Vector3f EnvironmentLight(const Eigen::Vector3f& direction) const;
   // Frame radiance toward -direction, and its opacity (the temples' feathering).
   Eigen::Vector3f Frame(const SceneHit& hit, const Eigen::Vector3f& point,
                         const Eigen::Vector3f& direction) const;
   float FrameOpacity(const SceneHit& hit, const Eigen::Vector3f& point) const;
-  // Equation (2)'s factor at a point of the face.
+  // Equation (2)'s factor at a point of the head.
   Eigen::Vector3f FaceRatio(const SceneHit& hit, const Eigen::Vector3f& point,
                             PixelState& pixel) const;
 
  private:
-  Eigen::Vector3f Inside(std::size_t lens, const Ray& ray, double weight, int bounces,
-                         PixelState& pixel) const;
   Eigen::Vector3f Head(const SceneHit& hit, const Eigen::Vector3f& point, PixelState& pixel) const;
   Eigen::Vector3f Miss(const Eigen::Vector3f& origin, const Eigen::Vector3f& direction,
                        bool transmitted, PixelState& pixel) const;
 
   const HeadScene& head_;
   Eigen::Matrix3f world_from_head_;
+  bool lenses_overlap_ = false;
   PictureView picture_;
   std::vector<Eigen::Vector3f> ratios_;            // one a baked point
   std::vector<Eigen::Vector3f> frame_irradiance_;  // one a vertex

@@ -1,0 +1,109 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "render/tile_mask.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace lorgnette {
+namespace {
+
+constexpr float kNearest_mm = 1;  // points nearer to the camera's plane are not projected
+constexpr float kMargin_px = 1.5f;
+
+class Marker {
+ public:
+  Marker(const Camera& camera, const Eigen::Isometry3d& camera_from_head)
+      : camera_(camera),
+        rotation_(camera_from_head.rotation().cast<float>()),
+        translation_(camera_from_head.translation().cast<float>()) {
+    mask.columns = (camera.width + kTileSide - 1) / kTileSide;
+    mask.rows = (camera.height + kTileSide - 1) / kTileSide;
+    mask.content.assign(std::size_t(mask.columns) * std::size_t(mask.rows), 0);
+  }
+
+  struct Box {
+    float x0 = 1e30f, y0 = 1e30f, x1 = -1e30f, y1 = -1e30f;
+    bool everywhere = false;
+  };
+  void Add(Box& box, const Eigen::Vector3f& head_point) const {
+    const Eigen::Vector3f p = rotation_ * head_point + translation_;
+    if (p.z() < kNearest_mm) {
+      box.everywhere = true;
+      return;
+    }
+    const float x = float(camera_.fx) * p.x() / p.z() + float(camera_.cx);
+    const float y = float(camera_.fy) * p.y() / p.z() + float(camera_.cy);
+    box.x0 = std::min(box.x0, x);
+    box.x1 = std::max(box.x1, x);
+    box.y0 = std::min(box.y0, y);
+    box.y1 = std::max(box.y1, y);
+  }
+  void Mark(const Box& box, std::uint8_t bits) {
+    int c0 = 0, r0 = 0, c1 = mask.columns - 1, r1 = mask.rows - 1;
+    if (!box.everywhere) {
+      if (box.x1 + kMargin_px < 0 || box.y1 + kMargin_px < 0 ||
+          box.x0 - kMargin_px > float(camera_.width) ||
+          box.y0 - kMargin_px > float(camera_.height)) {
+        return;
+      }
+      const auto tile = [](float v, int last) {
+        return std::clamp(int(std::floor(v / kTileSide)), 0, last);
+      };
+      c0 = tile(box.x0 - kMargin_px, c1);
+      c1 = tile(box.x1 + kMargin_px, c1);
+      r0 = tile(box.y0 - kMargin_px, r1);
+      r1 = tile(box.y1 + kMargin_px, r1);
+    }
+    for (int row = r0; row <= r1; ++row) {
+      for (int column = c0; column <= c1; ++column) {
+        mask.content[std::size_t(row) * std::size_t(mask.columns) + std::size_t(column)] |= bits;
+      }
+    }
+  }
+
+  TileMask mask;
+
+ private:
+  Camera camera_;
+  Eigen::Matrix3f rotation_;
+  Eigen::Vector3f translation_;
+};
+
+}  // namespace
+
+TileMask MarkTiles(const HeadScene& head, const Camera& camera,
+                   const Eigen::Isometry3d& camera_from_head) {
+  Marker marker(camera, camera_from_head);
+  const TriangleMesh& frame = head.frame.mesh;
+  for (const Eigen::Vector3i& t : frame.triangles) {
+    Marker::Box box;
+    for (int k = 0; k < 3; ++k) {
+      marker.Add(box, frame.positions[std::size_t(t[k])].cast<float>());
+    }
+    marker.Mark(box, kTileFrame);
+  }
+  for (std::size_t i = 0; i < head.lenses.size(); ++i) {
+    const LensSolid& lens = head.lenses[i];
+    Marker::Box box;
+    for (int corner = 0; corner < 8; ++corner) {
+      const Eigen::Vector3d p(corner & 1 ? lens.low().x() : lens.high().x(),
+                              corner & 2 ? lens.low().y() : lens.high().y(),
+                              corner & 4 ? lens.low().z() : lens.high().z());
+      marker.Add(box, (lens.head_from_lens() * p).cast<float>());
+    }
+    marker.Mark(box, i == 0 ? kTileRightLens : kTileLeftLens);
+  }
+  const bool everywhere = head.paper_shadow.has_value();
+  if (!everywhere && !head.baked_shadow) return std::move(marker.mask);
+  for (std::size_t t = 0; t < head.face_triangles.size(); ++t) {
+    if (!everywhere && !head.baked_shadow->touched(std::uint32_t(t))) continue;
+    Marker::Box box;
+    for (int k = 0; k < 3; ++k) {
+      marker.Add(box, head.face_vertices[std::size_t(head.face_triangles[t][k])]);
+    }
+    marker.Mark(box, kTileShadow);
+  }
+  return std::move(marker.mask);
+}
+
+}  // namespace lorgnette

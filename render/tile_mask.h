@@ -1,0 +1,34 @@
+// SPDX-License-Identifier: Apache-2.0
+// Which tiles of a picture can change, from the projections of what is inserted. Internal to
+// render/.
+#pragma once
+
+#include <Eigen/Geometry>
+#include <cstdint>
+#include <vector>
+
+#include "base/camera.h"
+#include "render/head_scene.h"
+
+namespace lorgnette {
+
+inline constexpr int kTileSide = 16;  // pixels
+
+enum TileContent : std::uint8_t {
+  kTileShadow = 1,  // face that the frame can darken
+  kTileFrame = 2,
+  kTileRightLens = 4,
+  kTileLeftLens = 8,
+};
+
+struct TileMask {
+  int columns = 0, rows = 0;
+  std::vector<std::uint8_t> content;  // TileContent bits; 0: the tile stays as it is
+};
+
+// Conservative: no pixel outside marked tiles changes. What lies behind the camera or across its
+// plane marks every tile.
+TileMask MarkTiles(const HeadScene& head, const Camera& camera,
+                   const Eigen::Isometry3d& camera_from_head);
+
+}  // namespace lorgnette

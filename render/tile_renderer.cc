@@ -1,0 +1,430 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "render/tile_renderer.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <limits>
+
+#include "optics/lens_kernel.h"
+
+namespace lorgnette {
+namespace {
+
+constexpr float kInfinity = std::numeric_limits<float>::infinity();
+
+// Storage behind RayArrays.
+struct RayColumns {
+  std::array<std::vector<float>, 6> columns;
+  void Resize(std::size_t n) {
+    for (auto& c : columns) c.resize(n);
+  }
+  RayArrays<float> view() {
+    return {columns[0].data(), columns[1].data(), columns[2].data(),
+            columns[3].data(), columns[4].data(), columns[5].data()};
+  }
+  RayArrays<const float> const_view() const {
+    return {columns[0].data(), columns[1].data(), columns[2].data(),
+            columns[3].data(), columns[4].data(), columns[5].data()};
+  }
+  Eigen::Vector3f point(std::size_t i) const {
+    return {columns[0][i], columns[1][i], columns[2][i]};
+  }
+  Eigen::Vector3f vector(std::size_t i) const {
+    return {columns[3][i], columns[4][i], columns[5][i]};
+  }
+  void Set(std::size_t i, const Eigen::Vector3f& p, const Eigen::Vector3f& d) {
+    for (std::size_t k = 0; k < 3; ++k) {
+      columns[k][i] = p[Eigen::Index(k)];
+      columns[k + 3][i] = d[Eigen::Index(k)];
+    }
+  }
+};
+
+// Rays of head space, traced in packets against the scene.
+struct Bundle {
+  std::vector<Eigen::Vector3f> origins, directions;
+  std::vector<float> far;  // in: length; unused entries are absent, not masked
+  std::vector<SceneHit> hits;
+
+  void Clear() {
+    origins.clear();
+    directions.clear();
+    far.clear();
+  }
+  void Add(const Eigen::Vector3f& origin, const Eigen::Vector3f& direction,
+           float length = kInfinity) {
+    origins.push_back(origin);
+    directions.push_back(direction);
+    far.push_back(length);
+  }
+  void Trace(const EmbreeScene& scene, RaySet set) {
+    const std::size_t n = origins.size();
+    hits.assign(n, SceneHit{});
+    RayPacket packet;
+    for (std::size_t first = 0; first < n; first += RayPacket::kSize) {
+      for (std::size_t k = 0; k < RayPacket::kSize; ++k) {
+        const std::size_t i = std::min(first + k, n - 1);
+        packet.valid[k] = first + k < n;
+        packet.ox[k] = origins[i].x();
+        packet.oy[k] = origins[i].y();
+        packet.oz[k] = origins[i].z();
+        packet.near[k] = 0;
+        packet.dx[k] = directions[i].x();
+        packet.dy[k] = directions[i].y();
+        packet.dz[k] = directions[i].z();
+        packet.far[k] = far[i];
+      }
+      scene.Intersect16(set, packet);
+      for (std::size_t k = 0; k < RayPacket::kSize && first + k < n; ++k) {
+        if (packet.object[k] == SceneObject::kNone) continue;
+        hits[first + k] = {packet.object[k], packet.triangle[k], packet.far[k], packet.u[k],
+                           packet.v[k]};
+      }
+    }
+  }
+};
+
+// Where a straight ray is inside a box; false when it misses.
+bool MeetsBox(const Eigen::Vector3f& origin, const Eigen::Vector3f& direction,
+              const Eigen::Vector3d& low, const Eigen::Vector3d& high) {
+  float t0 = 0, t1 = kInfinity;
+  for (int k = 0; k < 3; ++k) {
+    const float inverse = 1 / direction[k];
+    float a = (float(low[k]) - origin[k]) * inverse, b = (float(high[k]) - origin[k]) * inverse;
+    if (a > b) std::swap(a, b);
+    t0 = std::max(t0, a);
+    t1 = std::min(t1, b);
+  }
+  return t0 <= t1;
+}
+
+Eigen::Vector3f Mirrored(const Eigen::Vector3f& d, const Eigen::Vector3f& normal) {
+  return d - 2 * d.dot(normal) * normal;
+}
+
+// A ray through both surfaces away from the edge wall.
+struct Regular {
+  std::uint32_t sample;
+  bool near_rim;       // its way inside may meet the frame
+  float enter, leave;  // reflectances at the first and second surface
+  Eigen::Vector3f first_point, first_normal, inside, second_point, second_normal, exit;
+};
+
+}  // namespace
+
+struct TileRenderer::Batch {
+  Bundle primary;
+  std::vector<std::uint8_t>
+      lens_of;  // one a sample: 0 none, 1 right, 2 left, 3 to be traced exactly
+  // Lens kernel, lens frame.
+  RayColumns in, exit, first, inside, second;
+  std::vector<std::uint8_t> status;
+  std::vector<float> enter, leave;
+  std::vector<std::uint32_t> sample_of;
+  std::vector<Regular> regular;
+  // Internal reflection at the back.
+  RayColumns back_in, back_hit, back_out;
+  std::vector<std::uint8_t> back_status;
+  std::vector<float> back_reflectance;
+  // Head space.
+  Bundle rim, main, front_reflection, back_reflection;
+  std::vector<std::uint32_t> main_of, front_of, back_of;
+  std::vector<float> back_weight;
+};
+
+TileRenderer::TileRenderer(const HeadScene& head, const RayFollower& follower, const Camera& camera,
+                           const Eigen::Isometry3d& camera_from_head)
+    : head_(head),
+      follower_(follower),
+      camera_(camera),
+      head_from_camera_(camera_from_head.rotation().transpose().cast<float>()),
+      eye_(camera_from_head.inverse().translation()) {}
+TileRenderer::~TileRenderer() = default;
+
+void TileRenderer::TracePrimary(Batch& batch, std::vector<CameraSample>& samples) const {
+  const Eigen::Vector3f eye = eye_.cast<float>();
+  const float inverse_fx = float(1 / camera_.fx), inverse_fy = float(1 / camera_.fy);
+  batch.primary.Clear();
+  for (const CameraSample& s : samples) {
+    const Eigen::Vector3f d((s.x - float(camera_.cx)) * inverse_fx,
+                            (s.y - float(camera_.cy)) * inverse_fy, 1);
+    batch.primary.Add(eye, (head_from_camera_ * d).normalized());
+  }
+  batch.primary.Trace(head_.scene, RaySet::kAll);
+}
+
+void TileRenderer::Direct(std::size_t i, const Batch& batch, std::vector<CameraSample>& samples,
+                          std::vector<PixelState>& pixels) const {
+  CameraSample& sample = samples[i];
+  const Eigen::Vector3f& origin = batch.primary.origins[i];
+  const Eigen::Vector3f& direction = batch.primary.directions[i];
+  SceneHit hit = batch.primary.hits[i];
+  if (!hit.hit()) return;
+  Eigen::Vector3f point = origin + hit.distance * direction;
+  float opacity = 0;
+  if (hit.object == SceneObject::kFrame) {
+    opacity = follower_.FrameOpacity(hit, point);
+    if (opacity > 0) {
+      sample.kind = CameraSample::Kind::kFrame;
+      sample.inserted = opacity * follower_.Frame(hit, point, direction);
+    }
+    if (opacity < 1) {
+      hit = head_.scene.Intersect(RaySet::kHead, origin, direction, 0, kInfinity);
+      point = origin + hit.distance * direction;
+    }
+  }
+  sample.direct.setConstant(1 - opacity);
+  if (opacity < 1 && hit.hit()) {
+    if (sample.kind == CameraSample::Kind::kBackground) sample.kind = CameraSample::Kind::kHead;
+    sample.direct = (1 - opacity) * follower_.FaceRatio(hit, point, pixels[sample.pixel]);
+  }
+}
+
+// The exact way: any entry, in double, one ray at a time.
+void TileRenderer::TraceExactly(std::size_t i, const Batch& batch,
+                                std::vector<CameraSample>& samples,
+                                std::vector<PixelState>& pixels) const {
+  CameraSample& sample = samples[i];
+  const Eigen::Vector3d d =
+      head_from_camera_.cast<double>() * camera_.Direction(double(sample.x), double(sample.y));
+  const Ray ray{eye_, d.normalized()};
+  const auto glass = follower_.FirstGlass(ray);
+  const SceneHit& hit = batch.primary.hits[i];
+  if (!glass || (hit.hit() && double(hit.distance) < glass->hit.distance)) {
+    Direct(i, batch, samples, pixels);
+    return;
+  }
+  sample.kind = CameraSample::Kind::kLensElsewhere;
+  sample.direct.setZero();
+  sample.inserted =
+      follower_.EnterGlass(glass->lens, glass->ray, glass->hit, 1, 0, pixels[sample.pixel]);
+}
+
+void TileRenderer::TraceLens(std::size_t lens, Batch& batch, std::vector<CameraSample>& samples,
+                             std::vector<PixelState>& pixels) const {
+  const LensSolid& solid = head_.lenses[lens];
+  const double index = solid.lens().medium.index_d;
+  const Eigen::Matrix3f lens_from_head = solid.lens_from_head().linear().cast<float>();
+  const Eigen::Matrix3f head_from_lens = solid.head_from_lens().linear().cast<float>();
+  const Eigen::Vector3f lens_in_head = solid.head_from_lens().translation().cast<float>();
+  const auto to_head = [&](const Eigen::Vector3f& p) -> Eigen::Vector3f {
+    return head_from_lens * p + lens_in_head;
+  };
+
+  // Rays start near the glass, so that single precision keeps its digits there.
+  const Eigen::Vector3d eye_in_lens = solid.lens_from_head() * eye_;
+  const float shift = float(
+      std::max(0.0, eye_in_lens.norm() - std::max(solid.low().norm(), solid.high().norm()) - 10));
+  batch.sample_of.clear();
+  for (std::size_t i = 0; i < samples.size(); ++i) {
+    const Eigen::Vector3f d = lens_from_head * batch.primary.directions[i];
+    if (MeetsBox(eye_in_lens.cast<float>(), d, solid.low(), solid.high())) {
+      batch.sample_of.push_back(std::uint32_t(i));
+    }
+  }
+  const std::size_t n = batch.sample_of.size();
+  if (n == 0) return;
+  for (RayColumns* c : {&batch.in, &batch.exit, &batch.first, &batch.inside, &batch.second}) {
+    c->Resize(n);
+  }
+  batch.status.resize(n);
+  batch.enter.resize(n);
+  batch.leave.resize(n);
+  for (std::size_t k = 0; k < n; ++k) {
+    const Eigen::Vector3f d = lens_from_head * batch.primary.directions[batch.sample_of[k]];
+    const Eigen::Vector3d p = eye_in_lens + double(shift) * d.cast<double>();
+    batch.in.Set(k, p.cast<float>(), d);
+  }
+  RayArrays<float> first = batch.first.view(), inside = batch.inside.view(),
+                   second = batch.second.view();
+  LensBatchOutput<float> out{batch.exit.view(), batch.status.data()};
+  out.first = &first;
+  out.inside = &inside;
+  out.second = &second;
+  out.first_reflectance = batch.enter.data();
+  out.second_reflectance = batch.leave.data();
+  TraceLensBatch(solid.lens(), index, batch.in.const_view(), n, out);
+
+  // Sort out: straight through both surfaces, certainly beside the glass, or neither.
+  const ContourIndex& contour = solid.contour();
+  const double rim = head_.rim_depth_mm[lens];
+  batch.regular.clear();
+  for (std::size_t k = 0; k < n; ++k) {
+    const std::uint32_t i = batch.sample_of[k];
+    if (batch.lens_of[i] == 3) continue;
+    const Eigen::Vector3f p1 = batch.first.point(k), p2 = batch.inside.point(k);
+    const bool through = batch.status[k] == std::uint8_t(RayStatus::kOk) &&
+                         contour.Contains(double(p1.x()), double(p1.y())) &&
+                         contour.Contains(double(p2.x()), double(p2.y()));
+    if (!through || batch.lens_of[i] != 0 || batch.in.columns[5][k] <= 0) {
+      batch.lens_of[i] = 3;
+      continue;
+    }
+    const float entry = shift + (p1 - batch.in.point(k)).norm();
+    const SceneHit& hit = batch.primary.hits[i];
+    if (hit.hit() && hit.distance < entry) continue;
+    batch.lens_of[i] = std::uint8_t(lens + 1);
+    Regular r;
+    r.sample = i;
+    r.near_rim = contour.Clearance(double(p1.x()), double(p1.y())) < rim ||
+                 contour.Clearance(double(p2.x()), double(p2.y())) < rim;
+    r.enter = batch.enter[k];
+    r.leave = batch.leave[k];
+    r.first_point = p1;
+    r.first_normal = batch.first.vector(k);
+    r.inside = batch.inside.vector(k);
+    r.second_point = p2;
+    r.second_normal = batch.second.vector(k);
+    r.exit = batch.exit.vector(k);
+    batch.regular.push_back(r);
+  }
+
+  // The frame may reach into the glass along the rim.
+  batch.rim.Clear();
+  for (const Regular& r : batch.regular) {
+    if (!r.near_rim) continue;
+    batch.rim.Add(to_head(r.first_point), head_from_lens * r.inside,
+                  (r.second_point - r.first_point).norm());
+  }
+  batch.rim.Trace(head_.scene, RaySet::kFrame);
+
+  const bool reflection = head_.options.reflection;
+  batch.main.Clear();
+  batch.front_reflection.Clear();
+  batch.back_reflection.Clear();
+  batch.main_of.clear();
+  batch.front_of.clear();
+  batch.back_of.clear();
+  std::size_t rim_next = 0;
+  for (std::size_t k = 0; k < batch.regular.size(); ++k) {
+    Regular& r = batch.regular[k];
+    if (!reflection) r.enter = r.leave = 0;
+    CameraSample& sample = samples[r.sample];
+    sample.direct.setZero();
+    const Eigen::Vector3f d = lens_from_head * batch.primary.directions[r.sample];
+    if (r.enter > 0) {
+      batch.front_of.push_back(std::uint32_t(k));
+      batch.front_reflection.Add(to_head(r.first_point),
+                                 head_from_lens * Mirrored(d, r.first_normal));
+    }
+    if (r.near_rim) {
+      const std::size_t j = rim_next++;
+      if (const SceneHit& hit = batch.rim.hits[j]; hit.hit()) {
+        sample.kind = CameraSample::Kind::kFrame;
+        sample.inserted +=
+            (1 - r.enter) *
+            follower_.Frame(hit, batch.rim.origins[j] + hit.distance * batch.rim.directions[j],
+                            batch.rim.directions[j]);
+        continue;
+      }
+    }
+    batch.main_of.push_back(std::uint32_t(k));
+    batch.main.Add(to_head(r.second_point), head_from_lens * r.exit);
+    if (r.leave > 0) batch.back_of.push_back(std::uint32_t(k));
+  }
+
+  // Back reflection: from the second surface to the first, and out.
+  const std::size_t m = batch.back_of.size();
+  for (RayColumns* c : {&batch.back_in, &batch.back_hit, &batch.back_out}) c->Resize(m);
+  batch.back_status.resize(m);
+  batch.back_reflectance.resize(m);
+  for (std::size_t j = 0; j < m; ++j) {
+    const Regular& r = batch.regular[batch.back_of[j]];
+    batch.back_in.Set(j, r.second_point, Mirrored(r.inside, r.second_normal));
+  }
+  RayArrays<float> back_out = batch.back_out.view();
+  FaceBatchOutput<float> face{batch.back_hit.view(), batch.back_status.data()};
+  face.refracted = &back_out;
+  face.reflectance = batch.back_reflectance.data();
+  if (m > 0) {
+    TraceFaceBatch(solid.lens(), LensFace::kFront, index, batch.back_in.const_view(), m, face);
+  }
+  batch.back_weight.clear();
+  std::size_t kept = 0;
+  for (std::size_t j = 0; j < m; ++j) {
+    const std::uint32_t k = batch.back_of[j];
+    const Regular& r = batch.regular[k];
+    const Eigen::Vector3f p = batch.back_hit.point(j);
+    const float weight = (1 - r.enter) * r.leave;
+    CameraSample& sample = samples[r.sample];
+    if (batch.back_status[j] != std::uint8_t(RayStatus::kOk) ||
+        contour.Clearance(double(p.x()), double(p.y())) < rim) {
+      if (double(weight) < head_.options.least_weight) continue;
+      const Ray chain{r.second_point.cast<double>(),
+                      batch.back_in.vector(j).cast<double>().normalized()};
+      sample.inserted +=
+          weight * follower_.Inside(lens, chain, double(weight), 2, pixels[sample.pixel]);
+      continue;
+    }
+    batch.back_of[kept++] = k;
+    batch.back_weight.push_back(weight);
+    batch.back_reflection.Add(to_head(p), head_from_lens * batch.back_out.vector(j));
+  }
+  batch.back_of.resize(kept);
+
+  batch.main.Trace(head_.scene, RaySet::kAll);
+  batch.front_reflection.Trace(head_.scene, RaySet::kAll);
+  batch.back_reflection.Trace(head_.scene, RaySet::kAll);
+  const auto add = [&](std::uint32_t k, const Bundle& bundle, std::size_t j, float weight,
+                       bool transmitted) {
+    CameraSample& sample = samples[batch.regular[k].sample];
+    sample.inserted +=
+        weight * follower_.AtHit(bundle.hits[j], bundle.origins[j], bundle.directions[j],
+                                 transmitted, pixels[sample.pixel]);
+  };
+  const bool other_lens_near = head_.lenses.size() > 1 && follower_.lenses_overlap();
+  for (std::size_t j = 0; j < batch.main_of.size(); ++j) {
+    const std::uint32_t k = batch.main_of[j];
+    const Regular& r = batch.regular[k];
+    CameraSample& sample = samples[r.sample];
+    const SceneHit& hit = batch.main.hits[j];
+    sample.kind = hit.object == SceneObject::kFace ? CameraSample::Kind::kLensToHead
+                                                   : CameraSample::Kind::kLensElsewhere;
+    const float weight = (1 - r.enter) * (1 - r.leave);
+    if (other_lens_near) {
+      const Ray leaving{batch.main.origins[j].cast<double>(),
+                        batch.main.directions[j].cast<double>().normalized()};
+      if (follower_.FirstGlass(leaving)) {
+        sample.inserted +=
+            weight * follower_.Outside(leaving, double(weight), 1, true, pixels[sample.pixel]);
+        continue;
+      }
+    }
+    add(k, batch.main, j, weight, true);
+  }
+  for (std::size_t j = 0; j < batch.front_of.size(); ++j) {
+    add(batch.front_of[j], batch.front_reflection, j, batch.regular[batch.front_of[j]].enter,
+        false);
+  }
+  for (std::size_t j = 0; j < batch.back_of.size(); ++j) {
+    add(batch.back_of[j], batch.back_reflection, j, batch.back_weight[j], true);
+  }
+}
+
+void TileRenderer::Trace(std::vector<CameraSample>& samples, std::uint8_t content,
+                         std::vector<PixelState>& pixels) const {
+  thread_local Batch batch;
+  TracePrimary(batch, samples);
+  batch.lens_of.assign(samples.size(), 0);
+  const std::uint8_t lens_bits[2] = {kTileRightLens, kTileLeftLens};
+  for (std::size_t lens = 0; lens < head_.lenses.size(); ++lens) {
+    if (!(content & lens_bits[lens])) continue;
+    if (head_.options.refraction &&
+        (content & (kTileRightLens | kTileLeftLens)) == lens_bits[lens]) {
+      TraceLens(lens, batch, samples, pixels);
+    } else {
+      // Both lenses in one tile, or rays that pass unbent: seldom, and not worth a batch.
+      std::fill(batch.lens_of.begin(), batch.lens_of.end(), std::uint8_t(3));
+    }
+  }
+  for (std::size_t i = 0; i < samples.size(); ++i) {
+    if (batch.lens_of[i] == 3) {
+      TraceExactly(i, batch, samples, pixels);
+    } else if (batch.lens_of[i] == 0) {
+      Direct(i, batch, samples, pixels);
+    }
+  }
+}
+
+}  // namespace lorgnette
