@@ -3,10 +3,12 @@
 
 #include <fmt/format.h>
 
+#include <Eigen/LU>
 #include <algorithm>
 #include <cmath>
 
 #include "optics/base_curve.h"
+#include "optics/gaze.h"
 #include "optics/outline.h"
 #include "optics/power_vector.h"
 #include "optics/trace.h"
@@ -19,6 +21,9 @@ constexpr double kMaxReducedPower = 0.5;  // tau F1 beyond which the design is n
 constexpr int kMaxThicknessSteps = 200;
 constexpr double kThicknessTolerance_mm = 1e-12;
 constexpr double kMaxThickness_mm = 60;
+constexpr int kMaxAsphereSteps = 30;
+constexpr double kAsphereTolerance_D = 1e-9;
+constexpr double kFirstAsphere_per_mm3 = 1e-7;
 
 Status CheckOrder(const LensOrder& order) {
   const double numbers[] = {
@@ -57,8 +62,7 @@ Status CheckOrder(const LensOrder& order) {
 }
 
 Eigen::Vector2d PrismInLensFrame(const LensOrder& order) {
-  const double toward_nose = order.eye == Eye::kRight ? -1 : 1;
-  return {toward_nose * order.rx.prism_in.value(), order.rx.prism_up.value()};
+  return {NasalSign(order.eye) * order.rx.prism_in.value(), order.rx.prism_up.value()};
 }
 
 Error NoSag(const char* face, double curvature, double index, double rim_mm) {
@@ -82,26 +86,51 @@ double SteepestVertexCurvature(const Surface& surface) {
 // Everything about the lens but its thickness.
 struct Plan {
   const LensOrder& order;
-  Diopters front;
+  Diopters base;
   Eigen::Matrix2d power;
   GroundPrism prism;
   Outline outline;
+  Surface front;  // unless it depends on the thickness
+  double a4 = 0;  // of the aspheric front, mm^-3
+
+  bool ToricFront() const {
+    return order.toric_side == ToricSide::kFront && order.rx.cylinder != Diopters(0);
+  }
+  double Curvature() const { return base.per_mm() / (order.medium.index_d - 1); }
 
   Lens At(double thickness_mm) const {
     const double n = order.medium.index_d;
     Lens lens;
     lens.medium = order.medium;
     lens.center_thickness_mm = thickness_mm;
-    lens.front = SphereSurface{front.per_mm() / (n - 1)};
     lens.back_tilt_x = prism.tilt_x;
     lens.back_tilt_y = prism.tilt_y;
-    lens.back = ToricSurface(
-        BackCurvature(front.value() * Eigen::Matrix2d::Identity(), power, thickness_mm, n, prism),
-        order.generator, true);
+    if (ToricFront()) {
+      SetToricFront(lens);
+      return lens;
+    }
+    lens.front = order.aspheric_gaze_deg ? Surface(ConicSurface{Curvature(), 0, {a4}}) : front;
+    const Eigen::Matrix2d front_D = 1000 * (n - 1) * lens.front.VertexCurvature();
+    lens.back =
+        ToricSurface(BackCurvature(front_D, power, thickness_mm, n, prism), order.generator, true);
     return lens;
   }
   double ReducedPower(double thickness_mm) const {
-    return thickness_mm / 1000 / order.medium.index_d * front.value();
+    return thickness_mm / 1000 / order.medium.index_d * base.value();
+  }
+
+ private:
+  // Spherical back; the base curve is the front's flatter meridian, across the minus axis.
+  void SetToricFront(Lens& lens) const {
+    const double n = order.medium.index_d, tau = lens.center_thickness_mm / 1000 / n;
+    const PowerVector p = PowerVectorOfLensFrame(power);
+    const double weaker = p.mean - std::hypot(p.j0, p.j45);
+    const double back = weaker - base.value() / (1 - tau * base.value());
+    const Eigen::Matrix2d identity = Eigen::Matrix2d::Identity();
+    const Eigen::Matrix2d arriving = power - back * identity;
+    const Eigen::Matrix2d front_D = arriving * (identity + tau * arriving).inverse();
+    lens.front = ToricSurface(front_D / (1000 * (n - 1)), order.generator, false);
+    lens.back = SphereSurface{back / (1000 * (1 - n))};
   }
 };
 
@@ -115,13 +144,13 @@ Result<Candidate> Try(const Plan& plan, double thickness_mm) {
     return Failure(fmt::format(
         "lens: {:.1f} mm thick with a front of {:+.2f} D, tau F1 is {:.2f} and must stay below "
         "{}; possible: a flatter base curve or a smaller outline",
-        thickness_mm, plan.front.value(), plan.ReducedPower(thickness_mm), kMaxReducedPower));
+        thickness_mm, plan.base.value(), plan.ReducedPower(thickness_mm), kMaxReducedPower));
   }
   Candidate candidate{plan.At(thickness_mm), {}};
   const auto edge = EdgeOver(candidate.lens, plan.outline);
   if (!edge) {
     const double n = plan.order.medium.index_d, rim = plan.outline.radius_mm();
-    const double front = plan.front.per_mm() / (n - 1);
+    const double front = SteepestVertexCurvature(candidate.lens.front);
     if (std::abs(front) * rim >= 1) return tl::unexpected(NoSag("front", front, n, rim));
     return tl::unexpected(NoSag("back", SteepestVertexCurvature(candidate.lens.back), n, rim));
   }
@@ -165,31 +194,116 @@ Result<Candidate> WithGivenThickness(const Plan& plan, double thickness_mm) {
                   thickness_mm, candidate.edge.least_inside_mm, hint));
 }
 
+// Oblique astigmatism at the gaze of the order, of a lens with the mean power of this one.
+Result<double> ObliqueAstigmatism(const Plan& plan, const Lens& lens) {
+  Lens round = lens;
+  round.back = SphereSurface{0.5 * lens.back.VertexCurvature().trace()};
+  round.back_tilt_x = round.back_tilt_y = 0;
+  const double n = plan.order.medium.index_d, gaze_deg = *plan.order.aspheric_gaze_deg;
+  const GazeVergence gaze = EvaluateGaze(round, n, EyePose::OnAxis(round, plan.order.stop_mm),
+                                         {RadiansFromDegrees(gaze_deg), 0});
+  if (gaze.status != RayStatus::kOk) {
+    return Failure(
+        fmt::format("lens: no ray passes at {} degrees of eye rotation; possible: a "
+                    "smaller gaze for the aspheric form",
+                    gaze_deg));
+  }
+  return gaze.tangential_D - gaze.sagittal_D;
+}
+
+Result<Candidate> Solve(const Plan& plan) {
+  return plan.order.center_thickness_mm ? WithGivenThickness(plan, *plan.order.center_thickness_mm)
+                                        : SolveThickness(plan);
+}
+
+// Secant steps on the fourth-order term, the thickness solved anew each time.
+Result<Candidate> SolveAsphere(Plan& plan) {
+  LG_ASSIGN(Candidate candidate, Solve(plan));
+  LG_ASSIGN(double error, ObliqueAstigmatism(plan, candidate.lens));
+  double previous = 0, previous_error = error;
+  plan.a4 = kFirstAsphere_per_mm3;
+  for (int i = 0; i < kMaxAsphereSteps; ++i) {
+    LG_ASSIGN(candidate, Solve(plan));
+    LG_ASSIGN(error, ObliqueAstigmatism(plan, candidate.lens));
+    if (std::abs(error) < kAsphereTolerance_D || error == previous_error) return candidate;
+    const double slope = (error - previous_error) / (plan.a4 - previous);
+    previous = plan.a4;
+    previous_error = error;
+    plan.a4 -= error / slope;
+  }
+  return Failure(
+      fmt::format("lens: no aspheric front frees it of oblique astigmatism at {} degrees "
+                  "({:+.3f} D are left); possible: another base curve",
+                  *plan.order.aspheric_gaze_deg, error));
+}
+
+// What may not be combined, and the front that does not wait for the thickness.
+Result<Surface> MakeFront(const LensOrder& order, Diopters base, const Outline& outline) {
+  const double n = order.medium.index_d;
+  const bool multifocal = order.segment || order.progressive;
+  if (order.segment && order.progressive) {
+    return UsageError("lens order: got a segment and a progressive front, want one of the two");
+  }
+  if (multifocal && !(order.rx.add > Diopters(0))) {
+    return UsageError("lens order: a multifocal front without an addition, want an addition > 0");
+  }
+  const bool toric_front =
+      order.toric_side == ToricSide::kFront && order.rx.cylinder != Diopters(0);
+  if (int(multifocal) + int(toric_front) + int(order.aspheric_gaze_deg.has_value()) > 1) {
+    return UsageError("lens order: want one of a toric, an aspheric and a multifocal front");
+  }
+  if (toric_front && (order.rx.prism_in.value() != 0 || order.rx.prism_up.value() != 0)) {
+    return UsageError("lens order: ground prism behind a toric front; possible: toric on the back");
+  }
+  if (order.segment) {
+    if (order.segment->top_mm >= 0) {
+      return UsageError(
+          fmt::format("lens order: segment top: got {} mm, want below the optical "
+                      "centre",
+                      order.segment->top_mm));
+    }
+    return SegmentFront(*order.segment, order.eye, base, order.rx.add, n);
+  }
+  if (order.progressive) {
+    return ProgressiveFront(*order.progressive, order.eye, base, order.rx.add, n,
+                            outline.radius_mm());
+  }
+  return Surface(SphereSurface{base.per_mm() / (n - 1)});
+}
+
+Diopters BaseByRule(const LensOrder& order, double mean_power, double rim_radius_mm) {
+  const double n = order.medium.index_d;
+  Diopters base = VogelBaseCurve(Diopters(mean_power));
+  if (order.base_rule == BaseCurveRule::kTscherning) {
+    // Where the ellipse has no real form, Vogel's rule stays.
+    if (const auto forms = Tscherning(Diopters(mean_power), n, order.stop_mm)) {
+      base = forms->ostwalt;
+    }
+  }
+  return std::min(base, SteepestBaseCurve(rim_radius_mm, n));
+}
+
 }  // namespace
 
 Result<LensDesign> DesignLens(const LensOrder& order) {
   LG_RETURN_IF_ERROR(CheckOrder(order));
   const double n = order.medium.index_d;
   const PowerVector rx = PowerVectorOf({order.rx.sphere, order.rx.cylinder, order.rx.axis});
-  Plan plan{order,
-            {},
-            LensFrameMatrix(rx),
-            GrindPrism(PrismInLensFrame(order), n),
-            order.contour_mm.empty() ? Outline::Round(order.diameter_mm)
-                                     : Outline::FromPolygon(order.contour_mm)};
-  plan.front = order.base_curve.value_or(
-      std::min(VogelBaseCurve(Diopters(rx.mean)), SteepestBaseCurve(plan.outline.radius_mm(), n)));
-  if (!std::isfinite(plan.front.value())) {
+  const Outline outline = order.contour_mm.empty() ? Outline::Round(order.diameter_mm)
+                                                   : Outline::FromPolygon(order.contour_mm);
+  const Diopters base = order.base_curve.value_or(BaseByRule(order, rx.mean, outline.radius_mm()));
+  if (!std::isfinite(base.value())) {
     return UsageError("lens order: base curve: not a finite number");
   }
+  LG_ASSIGN(const Surface front, MakeFront(order, base, outline));
+  Plan plan{order,   base, LensFrameMatrix(rx), GrindPrism(PrismInLensFrame(order), n),
+            outline, front};
 
-  LG_ASSIGN(Candidate found, order.center_thickness_mm
-                                 ? WithGivenThickness(plan, *order.center_thickness_mm)
-                                 : SolveThickness(plan));
+  LG_ASSIGN(Candidate found, order.aspheric_gaze_deg ? SolveAsphere(plan) : Solve(plan));
   LensDesign design;
   design.order = order;
   design.lens = found.lens;
-  design.front_power = plan.front;
+  design.front_power = base;
   const Eigen::Matrix2d back_power = 1000 * (1 - n) * found.lens.back.VertexCurvature();
   const Eigen::Vector2d along = LensFrameDirection(order.rx.axis);
   const Eigen::Vector2d across(-along.y(), along.x());
@@ -197,7 +311,8 @@ Result<LensDesign> DesignLens(const LensOrder& order) {
   design.back_power_across = Diopters(across.dot(back_power * across));
   design.min_edge_thickness_mm = found.edge.least_mm;
   design.max_edge_thickness_mm = found.edge.greatest_mm;
-  design.mass_g = MassOver(found.lens, plan.outline);
+  design.mass_g = MassOver(found.lens, outline);
+  design.min_blank_mm = 2 * outline.radius_mm() + kBlankAllowance_mm;
   return design;
 }
 

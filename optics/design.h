@@ -9,11 +9,14 @@
 #include "base/result.h"
 #include "base/units.h"
 #include "optics/back_surface.h"
+#include "optics/base_curve.h"
 #include "optics/front_form.h"
 #include "optics/lens.h"
 #include "optics/prescription.h"
 
 namespace lorgnette {
+
+enum class ToricSide { kBack, kFront };
 
 // Everything that fixes one lens. Contour points are in the lens frame's x, y (optics/ray.h: +x
 // toward the wearer's right, +y up), relative to the optical centre.
@@ -29,7 +32,20 @@ struct LensOrder {
   double diameter_mm = 60;                    // of the round lens when there is no contour
   double vertex_distance_mm = 13;             // back vertex to cornea, for the magnification
   ToricGenerator generator = ToricGenerator::kAcrossMinusAxis;
+
+  BaseCurveRule base_rule = BaseCurveRule::kVogel;  // where no base curve is given
+  ToricSide toric_side = ToricSide::kBack;
+  // Aspheric front: a fourth-order term that frees the lens of oblique astigmatism at this eye
+  // rotation (degrees, about `stop_mm` behind the back vertex).
+  std::optional<double> aspheric_gaze_deg;
+  double stop_mm = 27;
+  // Multifocal front, for an addition in `rx`: at most one of the two.
+  std::optional<SegmentOrder> segment;
+  std::optional<ProgressiveOrder> progressive;
 };
+
+inline constexpr double kBlankAllowance_mm =
+    2;  // a blank is this much wider than the outline needs
 
 struct LensDesign {
   LensOrder order;
@@ -39,10 +55,12 @@ struct LensDesign {
   Diopters back_power_across;                                   // F2 at the axis + 90
   double min_edge_thickness_mm = 0, max_edge_thickness_mm = 0;  // over the contour, axial
   double mass_g = 0;
+  double min_blank_mm = 0;  // diameter about the optical centre, kBlankAllowance_mm included
 };
 
 // Prism is ground: the back surface turns about its vertex, and its curvatures are those that keep
-// the power along the deviated ray exact. The thickness is the least with which the centre and
+// the power along the deviated ray exact. With a toric front the base curve is the flatter front
+// meridian and the back is spherical. The thickness is the least with which the centre and
 // every point of the contour keep their minima, solved together with the back curve. Fails with
 // what is impossible and what would be possible (no real sag at the rim, tau F1 > 0.5).
 Result<LensDesign> DesignLens(const LensOrder& order);
