@@ -23,6 +23,7 @@ void AddTrackCommand(CLI::App& program, CommandContext& context);
 void AddLensCommand(CLI::App& program, CommandContext& context);
 void AddMeasureCommand(CLI::App& program, CommandContext& context);
 void AddFramesCommand(CLI::App& program, CommandContext& context);
+void AddComposeCommand(CLI::App& program, CommandContext& context);
 void AddValidateCommand(CLI::App& program, CommandContext& context);
 
 }  // namespace lorgnette

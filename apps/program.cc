@@ -40,10 +40,12 @@ int RunProgram(int argc, const char* const* argv, std::ostream& out, std::ostrea
       "Exit codes: 0 done, 1 it failed, 2 the request cannot be meant.");
 
   CommandContext context{out, {}};
+  AddTryonCommand(program, context);
   AddTrackCommand(program, context);
   AddLensCommand(program, context);
   AddMeasureCommand(program, context);
   AddFramesCommand(program, context);
+  AddComposeCommand(program, context);
   AddValidateCommand(program, context);
 
   std::vector<std::string> arguments(argv + std::min(argc, 1), argv + argc);
@@ -59,6 +61,9 @@ int RunProgram(int argc, const char* const* argv, std::ostream& out, std::ostrea
     err << "lorgnette" << (chosen.empty() ? "" : " " + chosen.front()->get_name()) << ": "
         << Sentence(error.what()) << " (--help explains)\n";
     return kExitUsage;
+  } catch (const std::exception& error) {
+    err << "lorgnette: " << Sentence(error.what()) << '\n';
+    return kExitFailure;
   }
   if (context.status) return kExitOk;
   const Error& error = context.status.error();

@@ -33,7 +33,8 @@ struct VideoFrame {
   ImageRgb8 rgb;
   double time_s = 0;
   long long pts = 0;  // in the stream's own time base, kept for the output
-  // Lets the writer store pixels whose rgb nobody changed exactly as they were decoded.
+  // Lets the writer store pixels whose rgb nobody changed exactly as they were decoded. None for
+  // image files.
   std::shared_ptr<const DecodedPicture> original;
 };
 

@@ -1,0 +1,127 @@
+// SPDX-License-Identifier: Apache-2.0
+// lorgnette tryon: the main job.
+#include <fmt/format.h>
+
+#include <CLI/App.hpp>
+#include <CLI/Config.hpp>
+#include <CLI/Formatter.hpp>
+#include <ostream>
+
+#include "apps/commands.h"
+#include "apps/tryon_pipeline.h"
+
+namespace lorgnette {
+namespace {
+
+struct TryonCommandOptions {
+  TryonRequest request;
+  std::string frames;
+  std::string shadow = "baked";
+  bool no_refraction = false, no_reflection = false, no_shadow = false;
+  std::vector<double> nudge;
+  double index = Medium{}.index_d;
+};
+
+constexpr int kMaxSamplesPerSide = 8;
+constexpr double kMaxNudge_mm = 30, kMaxNudge_deg = 30;
+
+Status ApplyNudge(const std::vector<double>& nudge, FitOptions& fit) {
+  if (nudge.empty()) return {};
+  if (nudge.size() != 3 && nudge.size() != 6) {
+    return UsageError(
+        fmt::format("--nudge: got {} numbers, want X,Y,Z in mm, or X,Y,Z,RX,RY,RZ "
+                    "with degrees",
+                    nudge.size()));
+  }
+  for (std::size_t i = 0; i < nudge.size(); ++i) {
+    const double limit = i < 3 ? kMaxNudge_mm : kMaxNudge_deg;
+    if (!(std::abs(nudge[i]) <= limit)) {
+      return UsageError(fmt::format("--nudge: got {}, want {}..{}", nudge[i], -limit, limit));
+    }
+    (i < 3 ? fit.nudge_mm : fit.nudge_deg)[static_cast<Eigen::Index>(i % 3)] = nudge[i];
+  }
+  return {};
+}
+
+Status RunTryonCommand(TryonCommandOptions options, std::ostream& out) {
+  TryonRequest& request = options.request;
+  LG_ASSIGN(request.frames, ParseFrameRange(options.frames));
+  LG_RETURN_IF_ERROR(ApplyNudge(options.nudge, request.fit));
+  CompositorOptions& compositor = request.compositor;
+  if (compositor.samples_per_side < 1 || compositor.samples_per_side > kMaxSamplesPerSide) {
+    return UsageError(fmt::format("--samples: got {}, want 1..{}", compositor.samples_per_side,
+                                  kMaxSamplesPerSide));
+  }
+  if (!(options.index >= 1.3 && options.index <= 2.2)) {
+    return UsageError(fmt::format("--index: got {}, want 1.3..2.2", options.index));
+  }
+  if (options.index != Medium{}.index_d) {
+    request.eyewear.medium.name = fmt::format("n = {}", options.index);
+    request.eyewear.medium.index_d = options.index;
+  }
+  compositor.refraction = !options.no_refraction;
+  compositor.reflection = !options.no_reflection;
+  compositor.shadow = options.no_shadow           ? ShadowMode::kNone
+                      : options.shadow == "paper" ? ShadowMode::kPaper
+                                                  : ShadowMode::kBaked;
+  LG_ASSIGN(const TryonResult result, RunTryon(request));
+  out << fmt::format("{}: {} frames, {} without a face, {:.1f} s\n", request.output, result.frames,
+                     result.frames_without_face, result.seconds.wall);
+  for (const std::string& still : result.stills) out << still << '\n';
+  if (!request.report.empty()) out << request.report << '\n';
+  return {};
+}
+
+}  // namespace
+
+void AddTryonCommand(CLI::App& program, CommandContext& context) {
+  CLI::App& command = *program.add_subcommand(
+      "tryon", "Put prescription glasses on the face in a video; write video, stills and report");
+  const auto options = std::make_shared<TryonCommandOptions>();
+  TryonRequest& request = options->request;
+  command.add_option("--video", request.video, "Video, image sequence (name_%04d.png) or image")
+      ->required();
+  command.add_option("--rx", request.rx, "Prescription file (JSON)")->required();
+  command.add_option("--frame", request.frame, "Shipped frame by name (lorgnette frames), or file")
+      ->required();
+  command
+      .add_option("-o,--output", request.output,
+                  "Video (.mp4 .mov .mkv), image sequence, or image for one image")
+      ->required();
+  command.add_option("--env", request.environment, "Light: EXR or HDR, latitude-longitude");
+  command.add_option("--track", request.track, "Track file, in place of tracking the video");
+  command.add_option("--frames", options->frames, "Part of the clip, A:B, first and last frame");
+  command.add_option("--stills", request.stills, "Also write this many stills beside the output")
+      ->check(CLI::Range(0, 1000));
+  command.add_flag("--beside", request.stills_beside_input, "Stills show the input at the left");
+  command.add_option("--report", request.report, "Write a report (JSON)");
+  command.add_flag("--no-refraction", options->no_refraction, "Leave out refraction");
+  command.add_flag("--no-reflection", options->no_reflection, "Leave out reflection");
+  command.add_flag("--no-shadow", options->no_shadow, "Leave out the shadow");
+  command.add_option("--shadow", options->shadow, "Shadow: baked (fast) or paper (Algorithm 1)")
+      ->check(CLI::IsMember({"baked", "paper"}))
+      ->capture_default_str();
+  command.add_option("--index", options->index, "Refractive index of the lenses")
+      ->capture_default_str();
+  command
+      .add_option("--samples", request.compositor.samples_per_side,
+                  "Samples a pixel along each side")
+      ->capture_default_str();
+  command
+      .add_option("--nudge", options->nudge,
+                  "Move the glasses after the fit: X,Y,Z in mm (wearer's left, up, forward), "
+                  "then turns about them in degrees")
+      ->delimiter(',');
+  command.add_option("--focal", request.focal_px, "Focal length, pixels (estimated if absent)");
+  command.add_option("--models", request.model_dir, "Folder of the face networks");
+  command.footer(
+      "Examples:\n"
+      "  lorgnette tryon --video clip.mp4 --rx rx.json --frame panto -o tryon.mp4\n"
+      "  lorgnette tryon --video clip.mp4 --rx rx.json --frame round --env studio.exr \\\n"
+      "      --frames 100:199 --stills 4 --report report.json -o part.mp4\n"
+      "  lorgnette tryon --video portrait.png --rx rx.json --frame aviator -o portrait_on.png");
+  command.final_callback(
+      [options, &context] { context.status = RunTryonCommand(*options, context.out); });
+}
+
+}  // namespace lorgnette

@@ -1,0 +1,361 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "apps/tryon_pipeline.h"
+
+#include <fmt/format.h>
+#include <tbb/parallel_pipeline.h>
+#include <tbb/task_arena.h>
+
+#include <algorithm>
+#include <atomic>
+#include <chrono>
+#include <cmath>
+#include <filesystem>
+
+#include "apps/still_choice.h"
+#include "apps/track_pipeline.h"
+#include "apps/tryon_report.h"
+#include "base/atomic_file.h"
+#include "base/progress.h"
+#include "geometry/frame_io.h"
+#include "render/environment.h"
+#include "render/image_io.h"
+#include "render/video_io.h"
+
+namespace lorgnette {
+namespace {
+
+using Clock = std::chrono::steady_clock;
+
+// Adds the life time of a scope to a number of seconds.
+class Timer {
+ public:
+  explicit Timer(double& seconds) : seconds_(seconds), start_(Clock::now()) {}
+  ~Timer() { seconds_ += std::chrono::duration<double>(Clock::now() - start_).count(); }
+  Timer(const Timer&) = delete;
+  Timer& operator=(const Timer&) = delete;
+
+ private:
+  double& seconds_;
+  Clock::time_point start_;
+};
+
+constexpr double kPdAgreement_mm = 0.05;
+constexpr std::size_t kFramesInFlight = 4;
+
+Result<Environment> ReadEnvironment(const TryonRequest& request, TryonResult& result) {
+  const std::string path = request.environment.empty() ? DefaultEnvironment() : request.environment;
+  if (path.empty()) {
+    result.environment = "even grey";
+    result.warnings.push_back("no environment: lit by even grey light");
+    return Environment::Constant({1, 1, 1});
+  }
+  result.environment = path;
+  std::string warning;
+  LG_ASSIGN(Environment environment, Environment::Read(path, &warning));
+  if (!warning.empty()) result.warnings.push_back(warning);
+  return environment;
+}
+
+Result<HeadTrack> GetTrack(const TryonRequest& request, const VideoInfo& video,
+                           const Prescription& rx) {
+  if (request.track.empty()) {
+    TrackRequest tracking;
+    tracking.video = request.video;
+    tracking.model_dir = request.model_dir;
+    tracking.frames = request.frames;
+    tracking.pd_mm = rx.pd_mm();
+    tracking.focal_px = request.focal_px;
+    return TrackVideo(tracking);
+  }
+  LG_ASSIGN(HeadTrack track, ReadHeadTrack(request.track));
+  if (track.camera.width != video.width || track.camera.height != video.height) {
+    return Failure(fmt::format("{}: is of a video of {}x{} pixels, and {} has {}x{}", request.track,
+                               track.camera.width, track.camera.height, request.video, video.width,
+                               video.height));
+  }
+  if (std::abs(track.pd_mm - rx.pd_mm()) > kPdAgreement_mm) {
+    return Failure(fmt::format("{}: was made for a PD of {} mm, and {} says {}; track again",
+                               request.track, track.pd_mm, request.rx, rx.pd_mm()));
+  }
+  return track;
+}
+
+// The tracked frames of a clip by time, since a track may hold a part of it.
+class TrackLookup {
+ public:
+  TrackLookup(const HeadTrack& track, double frame_rate)
+      : track_(track), tolerance_s_(0.25 / frame_rate) {}
+  const TrackedFrame* At(double time_s) const {
+    const auto& frames = track_.frames;
+    const auto after = std::lower_bound(
+        frames.begin(), frames.end(), time_s - tolerance_s_,
+        [](const TrackedFrame& frame, double time) { return frame.time_s < time; });
+    if (after == frames.end() || after->time_s > time_s + tolerance_s_) return nullptr;
+    return &*after;
+  }
+
+ private:
+  const HeadTrack& track_;
+  double tolerance_s_;
+};
+
+void SummarizePoses(const HeadTrack& track, TryonResult& result) {
+  bool any = false;
+  double squares = 0;
+  long found = 0;
+  for (const TrackedFrame& frame : track.frames) {
+    if (!frame.found) continue;
+    const HeadAngles angles = AnglesOf(frame.camera_from_head);
+    if (!any) result.least = result.greatest = angles;
+    any = true;
+    for (double HeadAngles::*angle : {&HeadAngles::yaw, &HeadAngles::pitch, &HeadAngles::roll}) {
+      result.least.*angle = std::min(result.least.*angle, angles.*angle);
+      result.greatest.*angle = std::max(result.greatest.*angle, angles.*angle);
+    }
+    squares += double(frame.residual_px) * double(frame.residual_px);
+    ++found;
+  }
+  result.mean_residual_px = found > 0 ? std::sqrt(squares / double(found)) : 0;
+}
+
+ImageRgb8 Beside(const ImageRgb8& left, const ImageRgb8& right) {
+  ImageRgb8 both(left.width + right.width, left.height);
+  for (int y = 0; y < left.height; ++y) {
+    std::copy_n(left.at(0, y), 3 * left.width, both.at(0, y));
+    std::copy_n(right.at(0, y), 3 * right.width, both.at(left.width, y));
+  }
+  return both;
+}
+
+// One frame on its way through the pipeline.
+struct Job {
+  VideoFrame frame;
+  const TrackedFrame* tracked = nullptr;
+  ImageRgb8 input;  // as read, of stills that show it
+};
+
+// The frames of the range, read, composed and written in order, the three overlapping.
+class Assembly {
+ public:
+  Assembly(const TryonRequest& request, VideoReader& reader, VideoWriter& writer,
+           Compositor& compositor, const HeadTrack& track, TryonResult& result)
+      : request_(request),
+        reader_(reader),
+        writer_(writer),
+        compositor_(compositor),
+        track_(track),
+        lookup_(track, reader.info().frame_rate),
+        chosen_(ChooseStills(track, request.stills)),
+        result_(result),
+        progress_("rendering", "frames",
+                  request.frames.Count(
+                      static_cast<long>(std::max<std::size_t>(track.frames.size(), 1)))) {}
+
+  Status Run() {
+    // Nested parallelism of the compositor may not steal another stage into this stage's time.
+    const auto isolated = [](auto&& work) { return tbb::this_task_arena::isolate(work); };
+    tbb::parallel_pipeline(
+        kFramesInFlight,
+        tbb::make_filter<void, std::shared_ptr<Job>>(tbb::filter_mode::serial_in_order,
+                                                     [&](tbb::flow_control& control) {
+                                                       auto job = isolated([&] { return Read(); });
+                                                       if (job == nullptr) control.stop();
+                                                       return job;
+                                                     }) &
+            tbb::make_filter<std::shared_ptr<Job>, std::shared_ptr<Job>>(
+                tbb::filter_mode::serial_in_order,
+                [&](std::shared_ptr<Job> job) {
+                  isolated([&] { Render(*job); });
+                  return job;
+                }) &
+            tbb::make_filter<std::shared_ptr<Job>, void>(
+                tbb::filter_mode::serial_in_order,
+                [&](const std::shared_ptr<Job>& job) { isolated([&] { Write(*job); }); }));
+    if (!status_) return status_;
+    if (result_.frames == 0) {
+      return UsageError(fmt::format("--frames: {} has only {} frames", request_.video, number_));
+    }
+    return {};
+  }
+
+  std::vector<std::pair<std::string, ImageRgb8>>& stills() { return stills_; }
+
+ private:
+  // The next frame of the range; nullptr at the end, or after an error.
+  std::shared_ptr<Job> Read() {
+    const Timer timer(result_.seconds.read);
+    while (!failed_ && number_ <= request_.frames.last) {
+      auto frame = reader_.Next();
+      if (!frame) return Fail(frame.error());
+      if (!*frame) return nullptr;
+      if (!request_.frames.Contains(number_++)) continue;
+      auto job = std::make_shared<Job>();
+      job->frame = **std::move(frame);
+      job->tracked = lookup_.At(job->frame.time_s);
+      if (job->tracked == nullptr) {
+        return Fail(Error{fmt::format("{}: has no frame at {:.3f} s of {}", request_.track,
+                                      job->frame.time_s, request_.video),
+                          ErrorKind::kFailure});
+      }
+      return job;
+    }
+    return nullptr;
+  }
+
+  void Render(Job& job) {
+    if (!job.tracked->found || failed_) return;
+    const Timer timer(result_.seconds.render);
+    if (!job.tracked->vertices.empty()) compositor_.UpdateFace(job.tracked->vertices);
+    if (request_.stills_beside_input && IsStill(job)) job.input = job.frame.rgb;
+    const ImageRgbF input = LinearFromDisplay(job.frame.rgb);
+    if (!exposed_) {
+      result_.environment_scale =
+          compositor_.MatchExposure(input, track_.camera, job.tracked->camera_from_head);
+      compositor_.SetEnvironmentScale(result_.environment_scale);
+      exposed_ = true;
+    }
+    RenderCounts counts;
+    const ImageRgbF output =
+        compositor_.Render(input, track_.camera, job.tracked->camera_from_head, &counts);
+    result_.counts.lens_pixels += counts.lens_pixels;
+    result_.counts.frame_pixels += counts.frame_pixels;
+    result_.counts.shadowed_pixels += counts.shadowed_pixels;
+    result_.counts.filled_samples += counts.filled_samples;
+    job.frame.rgb = DisplayFromLinear(output);
+  }
+
+  void Write(Job& job) {
+    if (failed_) return;
+    const Timer timer(result_.seconds.write);
+    if (const Status written = writer_.Write(job.frame); !written) {
+      Fail(written.error());
+      return;
+    }
+    ++result_.frames;
+    if (!job.tracked->found) ++result_.frames_without_face;
+    if (IsStill(job)) KeepStill(job);
+    progress_.Update(result_.frames);
+  }
+
+  bool IsStill(const Job& job) const {
+    const long index = job.tracked - track_.frames.data();
+    return std::find(chosen_.begin(), chosen_.end(), index) != chosen_.end();
+  }
+
+  void KeepStill(const Job& job) {
+    const std::filesystem::path output(request_.output);
+    const std::string name = fmt::format("{}_still_{:04d}.png", output.stem().string(),
+                                         static_cast<int>(stills_.size()) + 1);
+    stills_.emplace_back(
+        (output.parent_path() / name).string(),
+        request_.stills_beside_input ? Beside(job.input, job.frame.rgb) : job.frame.rgb);
+  }
+
+  std::nullptr_t Fail(const Error& error) {
+    if (!failed_.exchange(true)) status_ = tl::unexpected(error);
+    return nullptr;
+  }
+
+  const TryonRequest& request_;
+  VideoReader& reader_;
+  VideoWriter& writer_;
+  Compositor& compositor_;
+  const HeadTrack& track_;
+  TrackLookup lookup_;
+  std::vector<long> chosen_;
+  TryonResult& result_;
+  Progress progress_;
+  long number_ = 0;
+  bool exposed_ = false;
+  std::atomic<bool> failed_ = false;
+  Status status_;
+  std::vector<std::pair<std::string, ImageRgb8>> stills_;
+};
+
+}  // namespace
+
+std::string DefaultEnvironment() {
+  const std::filesystem::path models(DefaultModelDirectory());
+  const std::filesystem::path path = models.parent_path() / "inputs" / "environment.exr";
+  std::error_code ec;
+  return std::filesystem::exists(path, ec) ? path.string() : std::string();
+}
+
+HeadAngles AnglesOf(const Eigen::Isometry3d& camera_from_head) {
+  // Seen from the camera with y up and z toward it, the head's own axes when it faces the camera.
+  const Eigen::Matrix3d r = Eigen::Vector3d(1, -1, -1).asDiagonal() * camera_from_head.linear();
+  HeadAngles angles;
+  angles.yaw = DegreesFromRadians(std::atan2(r(0, 2), r(2, 2)));
+  angles.pitch = DegreesFromRadians(std::asin(std::clamp(r(1, 2), -1.0, 1.0)));
+  angles.roll = DegreesFromRadians(std::atan2(-r(1, 0), r(1, 1)));
+  return angles;
+}
+
+Result<TryonResult> RunTryon(const TryonRequest& request) {
+  TryonResult result;
+  result.request = request;
+  StageSeconds& seconds = result.seconds;
+  const auto start = Clock::now();
+
+  LG_ASSIGN(const std::string rx_text, ReadFile(request.rx));
+  LG_ASSIGN(result.prescription, ParsePrescription(rx_text, request.rx));
+  LG_ASSIGN(const FrameModel frame, LoadFrame(request.frame));
+  LG_ASSIGN(const Environment environment, ReadEnvironment(request, result));
+  LG_ASSIGN(VideoReader reader, VideoReader::Open(request.video));
+  VideoWriterOptions writing;
+  writing.start_at_first_frame = !request.frames.IsWhole();
+  LG_ASSIGN(VideoWriter writer, VideoWriter::Create(request.output, reader, writing));
+  result.width = reader.info().width;
+  result.height = reader.info().height;
+  result.frame_rate = reader.info().frame_rate;
+  result.has_audio = reader.info().has_audio;
+
+  HeadTrack track;
+  {
+    const Timer timer(seconds.track);
+    LG_ASSIGN(track, GetTrack(request, reader.info(), result.prescription));
+  }
+  const bool any = std::any_of(track.frames.begin(), track.frames.end(),
+                               [](const TrackedFrame& f) { return f.found; });
+  if (!any) return Failure(request.track + ": no frame shows a face");
+  result.camera = track.camera;
+  result.pd_mm = track.pd_mm;
+  SummarizePoses(track, result);
+
+  {
+    const Timer timer(seconds.design);
+    LG_ASSIGN(const Fit fit,
+              PlaceOnFace(frame, track.face, track.pupil_right, track.pupil_left, request.fit));
+    result.pad_shift_mm = fit.pad_shift_mm;
+    result.temple_opening_deg = fit.temple_opening_deg;
+    LG_ASSIGN(result.eyewear, MakeEyewear(fit, result.prescription, track.pupil_right,
+                                          track.pupil_left, request.eyewear));
+  }
+  const auto prepare = [&] {
+    const Timer timer(seconds.prepare);
+    return Compositor::Create(*result.eyewear, track.face, TriangleMesh{}, environment,
+                              request.compositor);
+  };
+  LG_ASSIGN(Compositor compositor, prepare());
+  std::vector<std::pair<std::string, ImageRgb8>> stills;
+  {
+    Assembly assembly(request, reader, writer, compositor, track, result);
+    LG_RETURN_IF_ERROR(assembly.Run());
+    stills = std::move(assembly.stills());
+  }
+  {
+    const Timer timer(seconds.write);
+    LG_RETURN_IF_ERROR(writer.Finish());
+    for (const auto& [name, image] : stills) {
+      LG_RETURN_IF_ERROR(WritePicture(image, name));
+      result.stills.push_back(name);
+    }
+  }
+  seconds.wall = std::chrono::duration<double>(Clock::now() - start).count();
+  if (!request.report.empty()) {
+    LG_RETURN_IF_ERROR(WriteFileAtomically(request.report, TryonReportJson(result)));
+  }
+  return result;
+}
+
+}  // namespace lorgnette

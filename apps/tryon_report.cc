@@ -1,0 +1,103 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "apps/tryon_report.h"
+
+#include <nlohmann/json.hpp>
+
+#include "apps/lens_json.h"
+#include "apps/program.h"
+
+namespace lorgnette {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+Json LensReport(const CutLens& cut) {
+  const LensDesign& design = cut.lens.design();
+  Json json = LensJson(design, MakeLensSheet(design, SheetRequest{}));
+  json["mount_misfit_mm"] = cut.mount_misfit_mm;
+  json["certificate"] = CertificateJson(cut.lens.certificate());
+  return json;
+}
+
+Json WearingJson(const TryonResult& result) {
+  const WearingPosition& w = result.eyewear->wearing;
+  return {{"vertex_distance_mm", {w.vertex_distance_right_mm, w.vertex_distance_left_mm}},
+          {"pantoscopic_tilt_deg", w.pantoscopic_tilt_deg},
+          {"face_form_deg", w.face_form_deg},
+          {"fitting_height_mm", {w.fitting_height_right_mm, w.fitting_height_left_mm}},
+          {"nose_penetration_mm", w.nose_penetration_mm},
+          {"nose_gap_mm", w.nose_gap_mm},
+          {"pad_shift_mm", result.pad_shift_mm},
+          {"temple_opening_deg", result.temple_opening_deg},
+          {"notes", w.notes}};
+}
+
+Json FrameJson(const FrameModel& frame) {
+  return {{"name", frame.name},
+          {"a_mm", frame.boxing.a_mm},
+          {"b_mm", frame.boxing.b_mm},
+          {"dbl_mm", frame.boxing.dbl_mm}};
+}
+
+Json VideoJson(const TryonResult& r) {
+  const auto range = [&](double HeadAngles::*angle) {
+    return Json{r.least.*angle, r.greatest.*angle};
+  };
+  return {{"input", r.request.video},
+          {"output", r.request.output},
+          {"width", r.width},
+          {"height", r.height},
+          {"frame_rate", r.frame_rate},
+          {"frames", r.frames},
+          {"frames_without_face", r.frames_without_face},
+          {"sound_copied", r.has_audio},
+          {"yaw_deg", range(&HeadAngles::yaw)},
+          {"pitch_deg", range(&HeadAngles::pitch)},
+          {"roll_deg", range(&HeadAngles::roll)},
+          {"focal_px", r.camera.fx},
+          {"pd_mm", r.pd_mm},
+          {"residual_px", r.mean_residual_px},
+          {"stills", r.stills}};
+}
+
+Json RenderJson(const TryonResult& r) {
+  const CompositorOptions& o = r.request.compositor;
+  const char* shadow = o.shadow == ShadowMode::kNone    ? "none"
+                       : o.shadow == ShadowMode::kPaper ? "paper"
+                                                        : "baked";
+  return {{"refraction", o.refraction},
+          {"reflection", o.reflection},
+          {"shadow", shadow},
+          {"samples_per_pixel", o.samples_per_side * o.samples_per_side},
+          {"environment", r.environment},
+          {"environment_scale", r.environment_scale},
+          {"lens_pixels", r.counts.lens_pixels},
+          {"frame_pixels", r.counts.frame_pixels},
+          {"shadowed_pixels", r.counts.shadowed_pixels},
+          {"filled_samples", r.counts.filled_samples}};
+}
+
+}  // namespace
+
+std::string TryonReportJson(const TryonResult& r) {
+  const StageSeconds& s = r.seconds;
+  const Json document = {{"program", std::string("lorgnette ") + ProgramVersion()},
+                         {"prescription", r.request.rx},
+                         {"frame", FrameJson(r.eyewear->frame)},
+                         {"lenses", {LensReport(r.eyewear->right), LensReport(r.eyewear->left)}},
+                         {"wearing_position", WearingJson(r)},
+                         {"video", VideoJson(r)},
+                         {"rendering", RenderJson(r)},
+                         {"seconds",
+                          {{"track", s.track},
+                           {"design", s.design},
+                           {"prepare", s.prepare},
+                           {"read", s.read},
+                           {"render", s.render},
+                           {"write", s.write},
+                           {"wall", s.wall}}},
+                         {"warnings", r.warnings}};
+  return document.dump(2) + '\n';
+}
+
+}  // namespace lorgnette
