@@ -2,6 +2,7 @@
 import "./style.css";
 
 import { Engine } from "./app/engine";
+import { fillMedia } from "./app/media";
 import { DEFAULT_ORDER, fromLink, toLink } from "./app/order";
 import { Store } from "./app/store";
 import { hasText, t, type TextKey } from "./app/texts";
@@ -10,14 +11,16 @@ import { view } from "./app/view";
 import { eyesSection } from "./sections/eyes";
 import { lensSection } from "./sections/lens";
 import { lessonsSection } from "./sections/lessons";
+import { mapsSection } from "./sections/maps";
 import { numbersSection } from "./sections/numbers";
 import { orderForm } from "./sections/order";
 import { practiceSection } from "./sections/practice";
 import { raysSection } from "./sections/rays";
+import { solidSection } from "./sections/solid";
 import { whySection } from "./sections/why";
 import { h } from "./ui/dom";
 
-const TABS = ["overview", "rays", "why", "lessons", "practice"] as const;
+const TABS = ["overview", "rays", "maps", "why", "lessons", "practice", "solid"] as const;
 type Tab = (typeof TABS)[number];
 
 function tabBar(panels: Record<Tab, HTMLElement>): HTMLElement {
@@ -55,6 +58,7 @@ async function start(app: HTMLElement): Promise<void> {
   applyTheme();
   document.title = t("page.title");
   const engine = await Engine.load();
+  fillMedia(engine.media());
   const store = new Store(engine, fromLink(location.hash), DEFAULT_ORDER);
   const linkedTab = new URLSearchParams(location.hash.slice(1)).get("tab") ?? "";
   if (TABS.includes(linkedTab as Tab)) view.tab = linkedTab;
@@ -70,9 +74,11 @@ async function start(app: HTMLElement): Promise<void> {
       }),
       lensSection(store, open("overview"))),
     rays: raysSection(store, open("rays")),
+    maps: mapsSection(store, open("maps")),
     why: why.root,
     lessons: lessonsSection(store),
     practice: practiceSection(),
+    solid: solidSection(store, open("solid")),
   };
   for (const tab of TABS) {
     panels[tab] = h("div", { role: "tabpanel", id: `panel-${tab}`, "aria-labelledby": `tab-${tab}`,

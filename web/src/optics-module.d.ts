@@ -8,6 +8,18 @@ declare module "*/wasm/optics.mjs" {
     _free(pointer: number): void;
     _lg_design(slot: number, order: number): number;
     _lg_read_prescription(text: number, name: number): number;
+    _lg_media(): number;
+    _lg_write_fhir(text: number, date: number): number;
+    _lg_gaze_map(slot: number, stop: number, halfX: number, halfY: number, n: number, m: number): number;
+    _lg_gaze_line(slot: number, stop: number, meridian: number, max: number, n: number): number;
+    _lg_progressive_map(
+      far: number,
+      add: number,
+      corridor: number,
+      index: number,
+      half: number,
+      n: number,
+    ): number;
     _lg_surfaces(slot: number, points: number, count: number): number;
     _lg_fan(
       slot: number,

@@ -13,6 +13,7 @@
 #include "optics/lens_sheet.h"
 #include "optics/trace.h"
 #include "page_json.h"
+#include "page_slots.h"
 
 namespace {
 
@@ -29,12 +30,6 @@ constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
 std::array<std::optional<CertifiedLens>, kPageSlots>& Slots() {
   static std::array<std::optional<CertifiedLens>, kPageSlots> slots;
   return slots;
-}
-
-// nullptr for a slot that holds nothing yet.
-const Lens* LensIn(int slot) {
-  if (slot < 0 || slot >= kPageSlots || !Slots()[std::size_t(slot)]) return nullptr;
-  return &Slots()[std::size_t(slot)]->lens();
 }
 
 Vector2d Meridian(double degrees) {
@@ -74,6 +69,11 @@ Vector2d FacePoint(const Ray& ray, double back_vertex_z, const PageView& view) {
 
 }  // namespace
 
+const Lens* lorgnette::page::LensIn(int slot) {
+  if (slot < 0 || slot >= kPageSlots || !Slots()[std::size_t(slot)]) return nullptr;
+  return &Slots()[std::size_t(slot)]->lens();
+}
+
 const char* lg_design(int slot, const char* order_json) {
   static std::string out;
   if (slot < 0 || slot >= kPageSlots) {
@@ -85,18 +85,43 @@ const char* lg_design(int slot, const char* order_json) {
   return out.c_str();
 }
 
+const char* lg_media() {
+  static std::string out;
+  out = lorgnette::page::MediaJson();
+  return out.c_str();
+}
+
 const char* lg_read_prescription(const char* text, const char* name) {
   static std::string out;
-  const auto result = lorgnette::ParsePrescription(text, name);
+  lorgnette::Result<lorgnette::FhirPrescription> result;
+  if (lorgnette::LooksLikeFhir(text)) {
+    result = lorgnette::ParseFhir(text, name);
+  } else {
+    result = lorgnette::ParsePrescription(text, name).map([](lorgnette::Prescription rx) {
+      return lorgnette::FhirPrescription{std::move(rx), true, true};
+    });
+  }
   out = result ? lorgnette::page::PrescriptionJson(*result)
                : lorgnette::page::ErrorJson(result.error());
+  return out.c_str();
+}
+
+const char* lg_write_fhir(const char* text, const char* date) {
+  static std::string out;
+  const auto rx = lorgnette::ParsePrescription(text, "order");
+  lorgnette::FhirHeader header;
+  header.created = header.date_written = date;
+  header.patient = "Patient/unknown";
+  header.prescriber = "Practitioner/unknown";
+  out = rx ? lorgnette::page::FhirJson(lorgnette::WriteFhir(*rx, header))
+           : lorgnette::page::ErrorJson(rx.error());
   return out.c_str();
 }
 
 const double* lg_surfaces(int slot, const double* points, int n) {
   static std::vector<double> out;
   out.assign(2 * std::size_t(n), kNaN);
-  const Lens* lens = LensIn(slot);
+  const Lens* lens = lorgnette::page::LensIn(slot);
   for (int i = 0; lens && i < n; ++i) {
     const double x = points[2 * i], y = points[2 * i + 1];
     double* z = out.data() + 2 * i;
@@ -113,7 +138,7 @@ const double* lg_fan(int slot, double meridian_deg, double half_mm, int n, doubl
   constexpr int kRow = 9;
   static std::vector<double> out;
   out.assign(kRow * std::size_t(n), 0);
-  const Lens* lens = LensIn(slot);
+  const Lens* lens = lorgnette::page::LensIn(slot);
   const Vector2d u = Meridian(meridian_deg);
   const double tangent = std::tan(lorgnette::RadiansFromDegrees(field_deg));
   for (int i = 0; i < n; ++i) {
@@ -146,7 +171,7 @@ const double* lg_fan(int slot, double meridian_deg, double half_mm, int n, doubl
 const float* lg_view(int slot, const PageView* view, int w, int h) {
   static std::vector<float> out;
   out.assign(4 * std::size_t(w) * std::size_t(h), 0);
-  const Lens* lens = LensIn(slot);
+  const Lens* lens = lorgnette::page::LensIn(slot);
   const Vector3d eye(view->cx, view->cy, -view->camera_mm);
   float* pixel = out.data();
   for (int j = 0; j < h; ++j) {

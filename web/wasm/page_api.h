@@ -28,9 +28,17 @@ inline constexpr int kPageSlots = 4;  // right, left, and two for comparisons
 // or {"ok": false, "error": sentence}.
 LG_PAGE_API const char* lg_design(int slot, const char* order_json);
 
-// A prescription for both eyes in our JSON or FHIR, checked and written back in our names:
-// {"ok": true, "OD": {...}, "OS": {...}, "PD": {...}, "vertex_distance": 13}
+// The materials that the optics knows: [{"name", "index_d", "abbe", "density_g_cm3",
+// "min_center_mm", "min_edge_mm"}, ...]
+LG_PAGE_API const char* lg_media();
+
+// A prescription for both eyes in our JSON or FHIR, checked: {"ok": true, "OD": {"sphere",
+// "cylinder", "axis", "add", "prism_in", "prism_up"}, "OS": {...}, "PD": {"right", "left"},
+// "vertex_distance"}; PD and vertex distance are null where a FHIR resource does not say them.
 LG_PAGE_API const char* lg_read_prescription(const char* text, const char* name);
+
+// A prescription in our JSON as FHIR; `date` as FHIR writes it. {"ok": true, "fhir": text}
+LG_PAGE_API const char* lg_write_fhir(const char* text, const char* date);
 
 // Both surfaces at n points (x, y): front z, back z (parallel to the axis); NaN where a surface
 // ends. 2 n numbers.
@@ -53,3 +61,23 @@ struct PageView {
   double camera_mm, cx, cy, x0, y0, x1, y1, depth_mm, face_x_mm, flat_mm, curve;
 };
 LG_PAGE_API const float* lg_view(int slot, const PageView* view, int w, int h);
+
+// What the turning eye meets over the lens: an n x m grid (rows downwards) of gazes from a centre
+// of rotation stop_mm behind the back vertex toward (x, y) of the plane through the back vertex,
+// |x| <= half_x_mm, |y| <= half_y_mm. For each 8 numbers: status (0 ok), error against the axis'
+// back vertex power as mean, J0 and J45 (D), prism of the gaze, base toward x and y (prism D), and
+// the tangents of the object's direction (x, y).
+LG_PAGE_API const double* lg_gaze_map(int slot, double stop_mm, double half_x_mm, double half_y_mm,
+                                      int n, int m);
+
+// Gazes 0..max_deg in n steps along a TABO meridian (the half of positive height), each (degrees,
+// sagittal and tangential error against the back vertex power in that meridian's own directions,
+// NaN when lost). 3 (n + 1) numbers.
+LG_PAGE_API const double* lg_gaze_line(int slot, double stop_mm, double meridian_deg,
+                                       double max_deg, int n);
+
+// The front surface of a progressive lens (ProgressiveSurface of optics/surface_shapes.h) by
+// itself: over |x| <= half_mm, |y| <= half_mm an n x n grid (rows downwards) of (mean power,
+// astigmatism). 2 n n numbers.
+LG_PAGE_API const double* lg_progressive_map(double far_D, double add_D, double corridor_mm,
+                                             double index, double half_mm, int n);

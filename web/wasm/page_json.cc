@@ -5,6 +5,7 @@
 #include <nlohmann/json.hpp>
 
 #include "base/json_reader.h"
+#include "optics/media.h"
 
 namespace lorgnette::page {
 namespace {
@@ -143,13 +144,34 @@ std::string ErrorJson(const Error& error) {
       .dump(-1, ' ', true, Json::error_handler_t::replace);
 }
 
-std::string PrescriptionJson(const Prescription& prescription) {
+std::string PrescriptionJson(const FhirPrescription& prescription) {
+  const Prescription& rx = prescription.rx;
+  Json pd = nullptr, vertex = nullptr;
+  if (prescription.has_pd) pd = {{"right", rx.pd_right_mm}, {"left", rx.pd_left_mm}};
+  if (prescription.has_vertex) vertex = rx.vertex_distance_mm;
   return Json({{"ok", true},
-               {"OD", EyeJson(prescription.right)},
-               {"OS", EyeJson(prescription.left)},
-               {"PD", {{"right", prescription.pd_right_mm}, {"left", prescription.pd_left_mm}}},
-               {"vertex_distance", prescription.vertex_distance_mm}})
+               {"OD", EyeJson(rx.right)},
+               {"OS", EyeJson(rx.left)},
+               {"PD", pd},
+               {"vertex_distance", vertex}})
       .dump();
+}
+
+std::string FhirJson(const std::string& resource) {
+  return Json({{"ok", true}, {"fhir", resource}}).dump();
+}
+
+std::string MediaJson() {
+  Json media = Json::array();
+  for (const MediumEntry& entry : StandardMedia()) {
+    media.push_back({{"name", entry.medium.name},
+                     {"index_d", entry.medium.index_d},
+                     {"abbe", entry.medium.abbe},
+                     {"density_g_cm3", entry.medium.density_g_cm3},
+                     {"min_center_mm", entry.min_center_mm},
+                     {"min_edge_mm", entry.min_edge_mm}});
+  }
+  return media.dump();
 }
 
 }  // namespace lorgnette::page

@@ -6,6 +6,7 @@
 
 #include "base/result.h"
 #include "optics/certify.h"
+#include "optics/fhir.h"
 #include "optics/lens_sheet.h"
 
 namespace lorgnette::page {
@@ -18,6 +19,9 @@ struct PageOrder {
 Result<PageOrder> ReadOrder(const std::string& json_text);
 std::string SheetJson(const CertifiedLens& lens, const LensSheet& sheet);
 std::string ErrorJson(const Error& error);
-std::string PrescriptionJson(const Prescription& prescription);
+// PD and vertex distance are null where the source does not say them.
+std::string PrescriptionJson(const FhirPrescription& prescription);
+std::string FhirJson(const std::string& resource);
+std::string MediaJson();
 
 }  // namespace lorgnette::page

@@ -3,6 +3,7 @@
 // the page shows of a lens comes from here.
 
 import create, { type OpticsModule } from "../wasm/optics.mjs";
+import type { Medium } from "./media";
 
 export type Pair = [number, number]; // along the cylinder axis, across it
 type MaybePair = [number | null, number | null]; // null: infinite
@@ -69,8 +70,8 @@ export interface ReadPrescription {
   ok: true;
   OD: ReadEye;
   OS: ReadEye;
-  PD: { right: number; left: number };
-  vertex_distance: number;
+  PD: { right: number; left: number } | null; // null: the file does not say
+  vertex_distance: number | null;
 }
 
 export interface LensOrder {
@@ -81,7 +82,7 @@ export interface LensOrder {
   add: number;
   prism_in: number;
   prism_up: number;
-  medium: { name: string; index_d: number; abbe: number; density_g_cm3: number };
+  medium: Omit<Medium, "min_center_mm" | "min_edge_mm">;
   base_curve_D?: number;
   center_thickness_mm?: number;
   min_center_thickness_mm: number;
@@ -118,6 +119,8 @@ export interface FanRay {
   direction: [number, number];
 }
 
+export const GAZE_ROW = 8; // status, mean, J0, J45, prism x, prism y, object tangents x, y
+
 export const SLOT = { right: 0, left: 1, compare: 2, practice: 3 } as const;
 
 export class Engine {
@@ -140,6 +143,35 @@ export class Engine {
         this.withPointer(name, (n) => this.module._lg_read_prescription(p, n)),
       ),
     );
+  }
+
+  media(): Medium[] {
+    return JSON.parse(this.module.UTF8ToString(this.module._lg_media()));
+  }
+
+  // FHIR's text of a prescription in our JSON.
+  writeFhir(ours: string, date: string): { ok: true; fhir: string } | Refusal {
+    return JSON.parse(
+      this.withText(ours, (p) => this.withPointer(date, (d) => this.module._lg_write_fhir(p, d))),
+    );
+  }
+
+  // What the turning eye meets: GAZE_ROW numbers for each of n x m gazes, rows downwards.
+  gazeMap(slot: number, stop: number, halfX: number, halfY: number, n: number, m: number): Float64Array {
+    const at = this.module._lg_gaze_map(slot, stop, halfX, halfY, n, m) / 8;
+    return this.module.HEAPF64.slice(at, at + GAZE_ROW * n * m);
+  }
+
+  // Rows of (degrees, sagittal error, tangential error).
+  gazeLine(slot: number, stop: number, meridian: number, max: number, n: number): Float64Array {
+    const at = this.module._lg_gaze_line(slot, stop, meridian, max, n) / 8;
+    return this.module.HEAPF64.slice(at, at + 3 * (n + 1));
+  }
+
+  // Pairs of (mean power, astigmatism) of a progressive front surface.
+  progressiveMap(far: number, add: number, corridor: number, index: number, half: number, n: number): Float64Array {
+    const at = this.module._lg_progressive_map(far, add, corridor, index, half, n) / 8;
+    return this.module.HEAPF64.slice(at, at + 2 * n * n);
   }
 
   // Front and back z over points (x, y): two numbers a point, NaN where a surface ends.

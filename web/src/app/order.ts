@@ -22,7 +22,7 @@ export interface EyeRx {
 export interface Order {
   right: EyeRx;
   left: EyeRx;
-  medium: string; // a key of MEDIA
+  medium: string; // a name of MEDIA
   base: number | null; // D; null: by rule
   centre: number | null; // mm; null: by rule
   minCentre: number;
@@ -51,7 +51,7 @@ const plainEye = (sphere: number, cylinder: number, axis: number | null): EyeRx 
 export const DEFAULT_ORDER: Order = {
   right: plainEye(-4.25, -0.75, 160),
   left: plainEye(-4.5, 0, null),
-  medium: "160",
+  medium: "1.60",
   base: null,
   centre: null,
   minCentre: 1.5,
@@ -119,6 +119,7 @@ export const decentration = (order: Order, eye: EyeName): number =>
 export function lensOrder(order: Order, eye: EyeName, change: Partial<Order> = {}): LensOrder {
   const o = { ...order, ...change };
   const rx = o[eye];
+  const { name, index_d, abbe, density_g_cm3 } = MEDIA[o.medium];
   return {
     eye,
     sphere: rx.sphere,
@@ -127,7 +128,7 @@ export function lensOrder(order: Order, eye: EyeName, change: Partial<Order> = {
     add: rx.add,
     prism_in: rx.prismIn,
     prism_up: rx.prismUp,
-    medium: MEDIA[o.medium],
+    medium: { name, index_d, abbe, density_g_cm3 },
     ...(o.base === null ? {} : { base_curve_D: o.base }),
     ...(o.centre === null ? {} : { center_thickness_mm: o.centre }),
     min_center_thickness_mm: o.minCentre,

@@ -1,18 +1,18 @@
 // SPDX-License-Identifier: Apache-2.0
 // The order in and out: link, our JSON, FHIR, frame shapes of OMA files. Nothing leaves the browser.
 
-import { fromFhir, isFhir, toFhir, toOurs } from "../app/fhir";
 import { readOma } from "../app/frames";
 import type { ReadEye } from "../app/engine";
 import { toLink, type EyeRx } from "../app/order";
+import { toOurs } from "../app/rx_json";
 import type { Store } from "../app/store";
 import { t } from "../app/texts";
 import { h, uniqueId } from "../ui/dom";
 
 const MAX_FILE_BYTES = 1_000_000;
 
-function save(name: string, json: unknown): void {
-  const blob = new Blob([`${JSON.stringify(json, null, 2)}\n`], { type: "application/json" });
+function save(name: string, text: string): void {
+  const blob = new Blob([text], { type: "application/json" });
   const link = h("a", { href: URL.createObjectURL(blob), download: name });
   link.click();
   URL.revokeObjectURL(link.href);
@@ -38,24 +38,13 @@ const eyeFrom = (rx: ReadEye, pd: number): EyeRx => ({
 function take(store: Store, name: string, text: string): { good: boolean; text: string } {
   const bad = (problem: string): { good: false; text: string } => ({ good: false, text: problem });
   if (/^\s*\{/.test(text)) {
-    let ours = text;
-    try {
-      const parsed: unknown = JSON.parse(text);
-      if (isFhir(parsed)) {
-        const converted = fromFhir(parsed, store.order);
-        if (typeof converted === "string") return bad(`${name}:${converted}`);
-        ours = JSON.stringify(converted);
-      }
-    } catch {
-      // The optics' reader says where the JSON breaks.
-    }
-    const read = store.engine.readPrescription(ours, name);
+    const read = store.engine.readPrescription(text, name);
     if (!read.ok) return bad(read.error);
     store.take({
       ...store.order,
-      right: eyeFrom(read.OD, read.PD.right),
-      left: eyeFrom(read.OS, read.PD.left),
-      vertex: ours === text ? read.vertex_distance : store.order.vertex,
+      right: eyeFrom(read.OD, read.PD?.right ?? store.order.right.pd),
+      left: eyeFrom(read.OS, read.PD?.left ?? store.order.left.pd),
+      vertex: read.vertex_distance ?? store.order.vertex,
     });
     return { good: true, text: t("files.tookRx", { name }) };
   }
@@ -91,6 +80,8 @@ export function filesCard(store: Store, changed: () => void): HTMLElement {
       changed();
     },
   });
+  const ours = (indent?: number): string =>
+    `${JSON.stringify(toOurs(store.lenses.order), null, indent)}\n`;
   const button = (text: string, onclick: () => void): HTMLElement =>
     h("button", { type: "button", class: "quiet", onclick }, text);
   return h("section", { class: "card files" },
@@ -108,9 +99,13 @@ export function filesCard(store: Store, changed: () => void): HTMLElement {
       }),
       h("label", { class: "quiet as-button", for: id }, t("files.open")),
       file,
-      button(t("files.saveJson"), () => save("prescription.json", toOurs(store.lenses.order))),
-      button(t("files.saveFhir"), () =>
-        save("vision-prescription.json", toFhir(store.lenses.order, new Date()))),
+      button(t("files.saveJson"), () => save("prescription.json", ours(2))),
+      button(t("files.saveFhir"), () => {
+        const date = new Date().toISOString().replace(/\.\d+Z$/, "Z");
+        const written = store.engine.writeFhir(ours(), date);
+        if (written.ok) save("vision-prescription.json", written.fhir);
+        else tell(false, written.error);
+      }),
     ),
     status,
     h("p", { class: "hint" }, t("files.private")),

@@ -103,10 +103,8 @@ function drawSection(
 }
 
 // Cool to warm over [0, 1].
-export function heat(f: number): string {
-  const x = Math.min(1, Math.max(0, f));
-  return `hsl(${Math.round(205 - 185 * x)} 62% ${Math.round(46 + 4 * Math.sin(Math.PI * x))}%)`;
-}
+const heat = (f: number): string =>
+  `color-mix(in oklab, #2f7fbf ${Math.round(100 * (1 - Math.min(1, Math.max(0, f))))}%, #d2691e)`;
 
 function drawOutline(engine: Engine, slot: number, order: Order): SVGElement {
   const contour = contourOf(order, view.eye);

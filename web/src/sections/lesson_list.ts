@@ -11,7 +11,7 @@ export type Question =
 export interface Lesson {
   id: string;
   paragraphs: number;
-  look: "overview" | "rays" | "why";
+  look: "overview" | "rays" | "maps" | "why";
   lens: Partial<Omit<Order, "right" | "left">> & { rx: Partial<EyeRx> };
   questions: Question[];
 }
@@ -51,7 +51,7 @@ export const LESSONS: Lesson[] = [
   {
     id: "prentice",
     paragraphs: 2,
-    look: "rays",
+    look: "maps",
     lens: { rx: { sphere: -6, cylinder: 0, axis: null } },
     questions: [number(0.5 * 6, "Δ", 0.02), choice(1), number(0.8 * 5, "Δ", 0.02)],
   },
@@ -59,14 +59,14 @@ export const LESSONS: Lesson[] = [
     id: "thick",
     paragraphs: 2,
     look: "why",
-    lens: { rx: { sphere: 7.5, cylinder: 0, axis: null }, medium: "poly", base: 10.25, a: 46, b: 38 },
+    lens: { rx: { sphere: 7.5, cylinder: 0, axis: null }, medium: "polycarbonate", base: 10.25, a: 46, b: 38 },
     questions: [number(backVertex(10.25, -3, 4, 1.586), "D", 0.01), choice(0)],
   },
   {
     id: "basecurve",
     paragraphs: 2,
     look: "overview",
-    lens: { rx: { sphere: 4, cylinder: 0, axis: null }, medium: "cr39", base: 8 },
+    lens: { rx: { sphere: 4, cylinder: 0, axis: null }, medium: "CR-39", base: 8 },
     questions: [number(100 * (1 / (1 - (0.004 / 1.498) * 8) - 1), "%", 0.06), choice(2)],
   },
   {
@@ -79,7 +79,7 @@ export const LESSONS: Lesson[] = [
   {
     id: "minkwitz",
     paragraphs: 2,
-    look: "why",
+    look: "maps",
     lens: { rx: { sphere: 0, cylinder: 0, axis: null, add: 2 } },
     questions: [number(2 * (2 / 14), "D/mm", 0.006), number(2 * (2 / 14) * 5, "D", 0.03), choice(1)],
   },
@@ -105,7 +105,7 @@ export const LESSONS: Lesson[] = [
     id: "edge",
     paragraphs: 2,
     look: "overview",
-    lens: { rx: { sphere: -6, cylinder: 0, axis: null }, medium: "160", shape: "round", a: 60, dbl: 4 },
+    lens: { rx: { sphere: -6, cylinder: 0, axis: null }, medium: "1.60", shape: "round", a: 60, dbl: 4 },
     questions: [number(1.5 + (900 * 6) / (2000 * 0.6), "mm", 0.06), choice(1)],
   },
 ];
