@@ -7,6 +7,7 @@
 #include "base/check.h"
 #include "base/units.h"
 #include "tracking/bundle.h"
+#include "tracking/face_model.h"
 
 namespace lorgnette {
 namespace {
@@ -52,6 +53,7 @@ class Anchorer {
   std::vector<Sighting> Match(std::size_t f, Eigen::Isometry3d* pose) const;
   PoseFit Fit(const std::vector<Sighting>& sightings, const Eigen::Isometry3d& guess,
               double scale_px) const;
+  void KeepSize();
   void AddView(std::size_t f, const Eigen::Isometry3d& pose);
 
   const AnchoringInput& in_;
@@ -82,9 +84,12 @@ std::vector<Sighting> Anchorer::Match(std::size_t f, Eigen::Isometry3d* pose) co
   const TexturePyramid texture(in_.frames[f].crop.grey);
   std::vector<Sighting> all;
   for (const std::size_t v : NearestViews(f)) {
-    const auto match = MatchAnchors(views_[v], in_.frames[f].crop, texture, camera_, Guess(f, v));
+    const bool first = all.empty();
+    const auto match =
+        MatchAnchors(views_[v], in_.frames[f].crop, texture, camera_, first ? Guess(f, v) : *pose,
+                     first ? PoseGuess::kRough : PoseGuess::kGood);
     if (!match) continue;
-    if (all.empty()) *pose = match->pose.camera_from_head;
+    if (first) *pose = match->pose.camera_from_head;
     const double off = AngleBetween(match->pose.camera_from_head, views_[v].camera_from_head);
     const double trust = std::exp(-0.5 * std::pow(off / kViewReach, 2));
     for (const AnchorSighting& s : match->sightings) {
@@ -201,7 +206,7 @@ double Anchorer::Bundle(double focal_log_sigma) {
   }
   BundleOptions options;
   options.focal_log_sigma = focal_log_sigma;
-  options.sigma_px = 0.3 * in_.frames[views_[0].frame].crop.region.side / 256;
+  options.sigma_px = 0.15 * in_.frames[views_[0].frame].crop.region.side / 256;
   const BundleReport report = FitBundle(sightings, options, camera_, poses, points);
   if (!report.usable) return 0;
   for (std::size_t v = 0; v < views_.size(); ++v) {
@@ -210,7 +215,28 @@ double Anchorer::Bundle(double focal_log_sigma) {
       views_[v].anchors[a].head = points[first_point[v] + a].head;
     }
   }
+  KeepSize();
   return report.rms_px;
+}
+
+// Pictures do not tell how large the head is: the bundle may have let it grow or shrink. Scales
+// everything about the camera of the first view until its anchors lie, on average, on the mesh.
+void Anchorer::KeepSize() {
+  const Eigen::Vector3d centre = views_[0].camera_from_head.inverse().translation();
+  double mesh = 0, found = 0;
+  for (const TextureAnchor& a : views_[0].anchors) {
+    mesh += (a.mesh - centre).dot(a.ray);
+    found += (a.head - centre).dot(a.ray);
+  }
+  if (!(found > 0)) return;
+  Similarity size;
+  size.scale = mesh / found;
+  size.shift = (1 - size.scale) * centre;
+  for (AnchorView& view : views_) {
+    view.camera_from_head = size.Rebased(view.camera_from_head);
+    for (TextureAnchor& a : view.anchors) a.head = size(a.head);
+  }
+  for (Eigen::Isometry3d& guess : guesses_) guess = size.Rebased(guess);
 }
 
 void Anchorer::FitPoses(AnchoredClip& clip) const {

@@ -22,7 +22,7 @@ struct BundleSighting {
 
 struct BundleOptions {
   double sigma_px = 0.5;          // of a sighting of weight 1; the loss is Cauchy from 2 sigma on
-  double sigma_mm = 6;            // of a point along its ray
+  double sigma_mm = 12;           // of a point along its ray
   double focal_log_sigma = 0.25;  // of the focal length about its present value; 0: held
   std::size_t fixed_frame = 0;    // its pose is held
   int max_iterations = 25;

@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "base/check.h"
+#include "base/units.h"
 #include "tracking/anchored_clip.h"
 #include "tracking/face_model.h"
 #include "tracking/focal_prior.h"
@@ -19,7 +20,12 @@ constexpr double kFieldSigmaMm = 15;  // over which the anchors' depths are spre
 constexpr double kMinFrontal = 0.4;   // z of an anchor's normal
 constexpr double kMostDepthMm = 12;
 constexpr double kNetworkYawSigma = 0.03;  // radians, of one reading about the common gain
+constexpr double kFrontalYaw = 0.14;       // radians, over which a reading's weight falls
 constexpr double kIndependentFrames = 10;
+// Standard errors of the yaw zero: of the network's readings, and of the mesh's symmetry for a clip
+// whose most frontal frame is turned by some angle.
+constexpr double kZeroYawSigma = RadiansFromDegrees(2);
+constexpr double kMeshYawSigma = RadiansFromDegrees(0.7), kMeshYawSigmaByAngle = 0.5;
 constexpr double kFieldDoubt = 1;  // weight of no change, in anchors
 
 // Yaw of the face against the line from the camera to it: what the network sees.
@@ -56,6 +62,16 @@ void ApplyAnchorDepths(const std::vector<AnchorView>& views, std::vector<Eigen::
   }
 }
 
+// Share of the network's reading in the yaw zero; the rest is the mesh's own plane of symmetry,
+// which is good in a clip that shows the face head on and worthless in one that does not.
+double TrustInNetworkYaw(const std::vector<double>& network_yaw) {
+  double most_frontal = kPi;
+  for (const double yaw : network_yaw) most_frontal = std::min(most_frontal, std::abs(yaw));
+  const double mesh_sigma = kMeshYawSigma + kMeshYawSigmaByAngle * most_frontal;
+  const double mesh = mesh_sigma * mesh_sigma, network = kZeroYawSigma * kZeroYawSigma;
+  return mesh / (mesh + network);
+}
+
 // Poses for frames that the anchors missed: the landmark pose, corrected as in the nearest frame
 // that they did not miss.
 std::vector<Eigen::Isometry3d> Completed(const std::vector<const FaceLandmarks*>& landmarks,
@@ -85,18 +101,25 @@ std::vector<Eigen::Isometry3d> Completed(const std::vector<const FaceLandmarks*>
 double YawOffset(const std::vector<double>& texture, const std::vector<double>& network) {
   LG_CHECK_EQ(texture.size(), network.size());
   LG_CHECK(!texture.empty());
-  // network = gain * texture + shift, with a prior on the gain; neighbouring frames err alike, so
-  // that together they count as few.
-  const double count = double(texture.size());
-  double mean_t = 0, mean_n = 0;
+  // network = gain * texture + shift, with a prior on the gain. Frames near zero count most: there
+  // the gain matters little. Neighbouring frames err alike, so that together they count as few.
+  double most_frontal = kPi;
+  for (const double yaw : network) most_frontal = std::min(most_frontal, std::abs(yaw));
+  std::vector<double> weights;
+  double total = 0, mean_t = 0, mean_n = 0;
   for (std::size_t i = 0; i < texture.size(); ++i) {
-    mean_t += texture[i] / count;
-    mean_n += network[i] / count;
+    const double off = (std::abs(network[i]) - most_frontal) / kFrontalYaw;
+    const double w = weights.emplace_back(std::exp(-0.5 * off * off));
+    total += w;
+    mean_t += w * texture[i];
+    mean_n += w * network[i];
   }
+  mean_t /= total;
+  mean_n /= total;
   double tt = 0, tn = 0;
   for (std::size_t i = 0; i < texture.size(); ++i) {
-    tt += (texture[i] - mean_t) * (texture[i] - mean_t) / count;
-    tn += (texture[i] - mean_t) * (network[i] - mean_n) / count;
+    tt += weights[i] * (texture[i] - mean_t) * (texture[i] - mean_t) / total;
+    tn += weights[i] * (texture[i] - mean_t) * (network[i] - mean_n) / total;
   }
   const double data = kIndependentFrames / (kNetworkYawSigma * kNetworkYawSigma);
   const double prior = 1 / (kNetworkYawGainSigma * kNetworkYawGainSigma);
@@ -143,8 +166,10 @@ HeadTrack FitClip(const std::vector<FollowedFrame>& frames, const CanonicalMesh&
     texture_yaw.push_back(ApparentYaw(poses[f]));
   }
   Similarity turn;
-  turn.rotation = Eigen::AngleAxisd(-YawOffset(texture_yaw, network_yaw), Eigen::Vector3d::UnitY())
-                      .toRotationMatrix();
+  turn.rotation =
+      Eigen::AngleAxisd(-TrustInNetworkYaw(network_yaw) * YawOffset(texture_yaw, network_yaw),
+                        Eigen::Vector3d::UnitY())
+          .toRotationMatrix();
   for (Eigen::Vector3d& p : points) p = turn(p);
   for (Eigen::Isometry3d& pose : poses) pose = turn.Rebased(pose);
   ComputeVertexNormals(track.face);

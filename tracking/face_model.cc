@@ -13,9 +13,9 @@
 namespace lorgnette {
 namespace {
 
-// The axes of the canonical file look down against the upright neutral head of the ICT face model
-// by this much, measured through the landmark network (docs/tracking.md).
-constexpr double kCanonicalPitchDeg = 2.0;
+// The canonical file has the eyes deeper in the face than the mean of scanned heads has
+// (docs/tracking.md): lids and corneas come forward by this, over an ellipse of these half axes.
+constexpr double kEyeForwardMm = 3, kEyeWidthMm = 13, kEyeHeightMm = 8;
 
 // Landmarks scatter and slide by this share of the pupil distance (docs/tracking.md).
 constexpr double kLandmarkSigma = 0.03;
@@ -77,9 +77,6 @@ Similarity HeadFromPoints(const std::vector<Eigen::Vector3d>& points,
                           const CanonicalMesh& canonical, double pd_mm) {
   LG_CHECK_EQ(points.size(), std::size_t(kLandmarks));
   Similarity head;
-  const Eigen::Matrix3d upright =
-      Eigen::AngleAxisd(RadiansFromDegrees(kCanonicalPitchDeg), Eigen::Vector3d::UnitX())
-          .toRotationMatrix();
   head.rotation = BestRotation(points, canonical.mesh.positions, canonical.rigid_weight);
   // The points, roughly upright, against their mirror image: half of the rotation between the two
   // turns the plane of symmetry to x = 0.
@@ -90,7 +87,7 @@ Similarity HeadFromPoints(const std::vector<Eigen::Vector3d>& points,
   }
   Eigen::AngleAxisd half(BestRotation(turned, mirrored, canonical.rigid_weight));
   half.angle() /= 2;
-  head.rotation = upright * half.toRotationMatrix() * head.rotation;
+  head.rotation = half.toRotationMatrix() * head.rotation;
   for (std::size_t i = 0; i < points.size(); ++i) turned[i] = head.rotation * points[i];
   const Pupils pupils = PupilsOf(turned);
   head.scale = pd_mm / pupils.distance();
@@ -109,7 +106,13 @@ Eigen::Isometry3d Similarity::Rebased(const Eigen::Isometry3d& camera_from_point
 std::vector<Eigen::Vector3d> CanonicalHead(const CanonicalMesh& canonical, double pd_mm) {
   const Similarity head = HeadFromPoints(canonical.mesh.positions, canonical, pd_mm);
   std::vector<Eigen::Vector3d> points;
-  for (const Eigen::Vector3d& p : canonical.mesh.positions) points.push_back(head(p));
+  for (const Eigen::Vector3d& p : canonical.mesh.positions) {
+    Eigen::Vector3d& q = points.emplace_back(head(p));
+    const Eigen::Array2d off((std::abs(q.x()) - pd_mm / 2) / kEyeWidthMm, q.y() / kEyeHeightMm);
+    q.z() += kEyeForwardMm * std::exp(-0.5 * off.square().sum());
+  }
+  const Similarity again = HeadFromPoints(points, canonical, pd_mm);
+  for (Eigen::Vector3d& p : points) p = again(p);
   return points;
 }
 

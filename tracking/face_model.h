@@ -40,7 +40,7 @@ struct Similarity {
 Similarity HeadFromPoints(const std::vector<Eigen::Vector3d>& points,
                           const CanonicalMesh& canonical, double pd_mm);
 
-// The canonical face in head space.
+// The canonical face in head space, its eyes brought forward to where people have them.
 std::vector<Eigen::Vector3d> CanonicalHead(const CanonicalMesh& canonical, double pd_mm);
 
 // Pose of a face of the given points from its landmarks alone: the start of every finer fit.

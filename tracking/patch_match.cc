@@ -15,7 +15,7 @@ constexpr double kSurroundingsSigma = 6;  // px of each level
 constexpr double kNoiseLevels = 3;        // grey levels of deviation that count as nothing
 constexpr double kSoften = 0.8;           // px, against the samples' own noise
 constexpr int kMaxSteps = 12;
-constexpr double kSettled = 0.01;       // px
+constexpr double kSettled = 0.02;       // px
 constexpr double kMinStrength = 0.004;  // per px^2, of values of about unit deviation
 
 Image<float, 1> Normalised(const cv::Mat& grey) {

@@ -37,7 +37,7 @@ class PatchTemplate {
   // Looks for the patch near `guess` in another picture, in which it appears under the linear map
   // `other_from_patch`. nullopt when the search leaves the picture, does not settle, or moves
   // further than `reach_px`. (Lucas and Kanade 1981, inverse form of Baker and Matthews 2004.)
-  // Tested: finds a shift of three pixels to a hundredth of a pixel.
+  // Tested: finds a shift of three pixels to a twentieth of a pixel.
   std::optional<Match> Find(const Image<float, 1>& level, const Eigen::Vector2d& guess,
                             const Eigen::Matrix2d& other_from_patch, double reach_px) const;
 

@@ -11,13 +11,12 @@ namespace {
 constexpr double kSpacing = 8;  // crop px between candidate anchors
 constexpr double kMinRigidWeight = 0.45;
 constexpr double kMinFacing = 0.35;  // cosine between normal and line of sight
-constexpr std::size_t kMostAnchors = 150;
+constexpr std::size_t kMostAnchors = 110;
 constexpr std::size_t kFewest = 12;  // sightings that make a match
 constexpr double kMinCorrelation = 0.7;
 // Reach of the search and scale of the robust pose fit, crop px, coarse and fine level.
 constexpr double kReach[] = {5, 12};
 constexpr double kPoseScale[] = {0.5, 2};
-constexpr int kPasses = 2;  // at the fine level
 
 // Position in a level of the crop.
 Eigen::Vector2d ToLevel(const FaceRegion& region, const Image<float, 1>& level,
@@ -137,11 +136,10 @@ AnchorView MakeAnchorView(std::size_t frame, const FaceCrop& crop, const Texture
 
 std::optional<AnchorMatch> MatchAnchors(const AnchorView& view, const FaceCrop& crop,
                                         const TexturePyramid& texture, const Camera& camera,
-                                        const Eigen::Isometry3d& guess) {
+                                        const Eigen::Isometry3d& guess, PoseGuess quality) {
   AnchorMatch match;
   match.pose.camera_from_head = guess;
-  for (int pass = 0; pass <= kPasses; ++pass) {
-    const std::size_t level = pass == 0 ? 1 : 0;
+  for (std::size_t level = quality == PoseGuess::kRough ? 2 : 1; level-- > 0;) {
     const Image<float, 1>& picture = texture.levels[level];
     const double image_px = crop.region.side / picture.width;  // a level's pixel in image pixels
     const Eigen::Isometry3d pose = match.pose.camera_from_head;
@@ -171,7 +169,7 @@ std::optional<AnchorMatch> MatchAnchors(const AnchorView& view, const FaceCrop& 
       points.push_back({anchor.head, s.pixel, s.weight});
     }
     if (match.sightings.size() < kFewest) {
-      if (pass == 0) continue;  // the fine level may still find them
+      if (level > 0) continue;  // the fine level may still find them
       return std::nullopt;
     }
     match.pose = FitPose(camera, points, pose, kPoseScale[level] * image_px);

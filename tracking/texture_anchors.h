@@ -50,10 +50,14 @@ struct AnchorMatch {
   std::vector<AnchorSighting> sightings;
 };
 
-// Finds the view's anchors in another frame, from a guess of its pose, coarse level first.
+// How well the pose is known beforehand: from landmarks (coarse level first), or already from
+// texture (fine level only).
+enum class PoseGuess { kRough, kGood };
+
+// Finds the view's anchors in another frame, from a guess of its pose.
 // nullopt when too few are found or agree.
 std::optional<AnchorMatch> MatchAnchors(const AnchorView& view, const FaceCrop& crop,
                                         const TexturePyramid& texture, const Camera& camera,
-                                        const Eigen::Isometry3d& guess);
+                                        const Eigen::Isometry3d& guess, PoseGuess quality);
 
 }  // namespace lorgnette
