@@ -11,6 +11,14 @@
 #include "optics/media.h"
 
 namespace lorgnette {
+namespace {
+
+constexpr double kChartStep_D = 0.5;
+constexpr double kSteepestChartCurve_D = 12;
+constexpr double kAboveVogel_D = 2;
+constexpr double kWeak_D = 1.5;  // below it every form is good and the best one is noise
+
+}  // namespace
 
 Diopters VogelBaseCurve(Diopters spherical_equivalent) {
   const double se = spherical_equivalent.value();
@@ -113,13 +121,26 @@ Diopters BestFormBaseCurve(Diopters power, double index, double min_center_mm,
 BaseCurveChart ComputeBestFormChart() {
   BaseCurveChart chart;
   chart.name = "computed best form, least RMS of S' and T' at 30 degrees";
-  std::vector<double> bases;
-  for (double b = 0.5; b <= 12; b += 0.5) bases.push_back(b);
   for (const MediumEntry& entry : StandardMedia()) {
-    BaseCurveChart::MediumRows rows{entry.medium.name, entry.medium.index_d, {}};
-    for (double se = -15; se <= 8; se += 0.5) {
-      rows.rows.push_back(
-          {se, BestFormBaseCurve(Diopters(se), rows.index, entry.min_center_mm, bases).value()});
+    const double n = entry.medium.index_d;
+    const auto best = [&](double se) {
+      // Minus lenses have a second least error on steep, bulging forms that nobody wears.
+      const double steepest =
+          se < 0 ? VogelBaseCurve(Diopters(se)).value() + kAboveVogel_D : kSteepestChartCurve_D;
+      std::vector<double> bases;
+      for (double b = kFlattestRuleCurve_D; b <= steepest; b += kChartStep_D) bases.push_back(b);
+      return BestFormBaseCurve(Diopters(se), n, entry.min_center_mm, bases).value();
+    };
+    const double weakest[2] = {best(-kWeak_D), best(kWeak_D)};
+    BaseCurveChart::MediumRows rows{entry.medium.name, n, {}};
+    for (double se = -15; se <= 8; se += kChartStep_D) {
+      const double along = (se + kWeak_D) / (2 * kWeak_D);
+      const double base =
+          std::abs(se) >= kWeak_D
+              ? best(se)
+              : kChartStep_D *
+                    std::round((weakest[0] + along * (weakest[1] - weakest[0])) / kChartStep_D);
+      rows.rows.push_back({se, base});
     }
     chart.media.push_back(std::move(rows));
   }

@@ -67,7 +67,8 @@ Diopters BestFormBaseCurve(Diopters power, double index, double min_center_mm,
 std::optional<double> FormError(Diopters power, Diopters base, double index, double min_center_mm);
 
 // The chart so computed for every standard medium: rows at every 0.5 D of spherical equivalent from
-// -15 to +8, bases in 0.5 D steps from 0.5 to 12.
+// -15 to +8, bases in 0.5 D steps from 0.5 to 12, no more than 2 D steeper than Vogel's for minus
+// lenses. Between -1.5 and +1.5 D, where no form errs visibly, the rows are interpolated.
 BaseCurveChart ComputeBestFormChart();
 std::string WriteBaseCurveChart(const BaseCurveChart& chart);
 

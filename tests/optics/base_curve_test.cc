@@ -98,6 +98,15 @@ TEST(BaseCurveChart, NamesWhatIsWrong) {
   EXPECT_FALSE(BaseCurveChart{}.Choose("CR-39", 1.498, Diopters(0)));
 }
 
+TEST(BaseCurveChart, ComputedCurvesSteepenWithThePower) {
+  for (const auto& medium : ComputeBestFormChart().media) {
+    for (std::size_t i = 1; i < medium.rows.size(); ++i) {
+      EXPECT_GE(medium.rows[i].base_D, medium.rows[i - 1].base_D)
+          << medium.medium << " at " << medium.rows[i].upper_se_D;
+    }
+  }
+}
+
 // The chart that ships is the computed one.
 TEST(BaseCurveChart, ShipsAsComputed) {
   std::ifstream file(LORGNETTE_SOURCE_DIR "/data/base_curves.json");
