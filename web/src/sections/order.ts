@@ -174,14 +174,10 @@ export function orderForm(store: Store): HTMLElement {
   );
   const problem = h("div", { class: "problem", role: "alert", hidden: true });
 
-  const root = h("form", { class: "order", "aria-label": t("order.title"), novalidate: true },
-    problem,
-    eyes.right.root,
-    eyes.left.root,
-    h("button", { type: "button", class: "quiet", onclick: () => {
-      store.set({ left: { ...store.order.right, pd: store.order.left.pd } });
-      showOrder();
-    } }, t("order.copyRight")),
+  // Beside the drawings the whole form is open; above them, on a narrow screen, it would hide them.
+  const wide = matchMedia("(min-width: 900px)");
+  const rest = h("details", { class: "rest", open: wide.matches },
+    h("summary", {}, t("order.rest")),
     h("section", { class: "card" },
       h("h3", {}, t("order.lens")),
       mediumField,
@@ -196,6 +192,20 @@ export function orderForm(store: Store): HTMLElement {
       h("div", { class: "row3" }, field("vertex", "mm"), field("camera", "mm"),
         field("tint", "%"))),
     filesCard(store, () => showOrder()),
+  );
+  wide.addEventListener("change", () => {
+    rest.open = wide.matches;
+  });
+
+  const root = h("form", { class: "order", "aria-label": t("order.title"), novalidate: true },
+    problem,
+    eyes.right.root,
+    eyes.left.root,
+    h("button", { type: "button", class: "quiet", onclick: () => {
+      store.set({ left: { ...store.order.right, pd: store.order.left.pd } });
+      showOrder();
+    } }, t("order.copyRight")),
+    rest,
   );
   root.addEventListener("submit", (event) => event.preventDefault());
 

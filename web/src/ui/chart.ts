@@ -36,6 +36,7 @@ export function chart(xLabel: string, yLabel: string, series: ChartSeries[]): Ch
     });
     plot = new uPlot(
       {
+        pxAlign: false,
         width: Math.max(220, root.clientWidth || 420),
         height: HEIGHT,
         scales: { x: { time: false } },
