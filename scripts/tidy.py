@@ -83,7 +83,7 @@ def main():
         return path, run
 
     failed = 0
-    with ThreadPoolExecutor(os.cpu_count()) as pool:
+    with ThreadPoolExecutor(len(os.sched_getaffinity(0))) as pool:
         for done in as_completed([pool.submit(tidy, job) for job in todo]):
             path, run = done.result()
             if run.returncode != 0:

@@ -202,6 +202,12 @@ TEST(JsonReader, CutsLongTextInErrors) {
   EXPECT_LT(FinishMessage(json).size(), 100u);
 }
 
+TEST(JsonReader, TellsObjectsFromOtherValues) {
+  const JsonReader json = Read(R"({"o": {}, "n": 1, "a": [], "z": null})");
+  EXPECT_TRUE(json.IsObject("o"));
+  for (const char* key : {"n", "a", "z", "absent"}) EXPECT_FALSE(json.IsObject(key)) << key;
+}
+
 TEST(JsonReader, ListsItsKeys) {
   EXPECT_THAT(Read(R"({"b": 1, "a": 2})").Keys(), testing::UnorderedElementsAre("a", "b"));
 }
