@@ -53,6 +53,12 @@ struct LatticeCorner {
 
 }  // namespace
 
+float WeightOfOpenShare(float open_share) {
+  constexpr float kNone = 0.1f, kFull = 0.4f;
+  const float s = std::clamp((open_share - kNone) / (kFull - kNone), 0.0f, 1.0f);
+  return s * s * (3 - 2 * s);
+}
+
 BakedShadow BakedShadow::Bake(const EmbreeScene& scene, const TriangleMesh& face,
                               const TriangleMesh& frame, const ShadowOptions& options) {
   BakedShadow baked;
@@ -111,12 +117,12 @@ BakedShadow BakedShadow::Bake(const EmbreeScene& scene, const TriangleMesh& face
                            scene.Occluded16(RaySet::kFrame, packet);
                            for (std::size_t k = 0; k < RayPacket::kSize; ++k) {
                              if (packet.valid[k] && packet.far[k] < 0) {
-                               blocked.push_back({std::uint16_t(first + k), cosine[k]});
+                               blocked.push_back({std::uint16_t(first + k), false, cosine[k]});
                              }
                            }
                          });
     if (options.sees_face) {
-      KeepWhatTheFaceLeaves(scene, sphere, position + kFaceLift_mm * normal, blocked);
+      MarkWhatTheFaceHides(scene, sphere, position + kFaceLift_mm * normal, blocked);
     }
   });
 
@@ -138,12 +144,10 @@ BakedShadow BakedShadow::Bake(const EmbreeScene& scene, const TriangleMesh& face
   return baked;
 }
 
-// Keeps the blocked directions that would have been open without the frame.
-void BakedShadow::KeepWhatTheFaceLeaves(const EmbreeScene& scene,
-                                        const std::vector<Eigen::Vector3f>& sphere,
-                                        const Eigen::Vector3f& origin,
-                                        std::vector<Blocked>& blocked) {
-  std::size_t kept = 0;
+void BakedShadow::MarkWhatTheFaceHides(const EmbreeScene& scene,
+                                       const std::vector<Eigen::Vector3f>& sphere,
+                                       const Eigen::Vector3f& origin,
+                                       std::vector<Blocked>& blocked) {
   for (std::size_t first = 0; first < blocked.size(); first += RayPacket::kSize) {
     RayPacket packet;
     for (std::size_t k = 0; k < RayPacket::kSize; ++k) {
@@ -161,10 +165,9 @@ void BakedShadow::KeepWhatTheFaceLeaves(const EmbreeScene& scene,
     }
     scene.Occluded16(RaySet::kHead, packet);
     for (std::size_t k = 0; k < RayPacket::kSize; ++k) {
-      if (packet.valid[k] && packet.far[k] >= 0) blocked[kept++] = blocked[first + k];
+      if (packet.valid[k]) blocked[first + k].hidden = packet.far[k] < 0;
     }
   }
-  blocked.resize(kept);
 }
 
 void BakedShadow::BakeOpenLight(const EmbreeScene& scene, const TriangleMesh& face,
@@ -177,58 +180,68 @@ void BakedShadow::BakeOpenLight(const EmbreeScene& scene, const TriangleMesh& fa
   tbb::parallel_for(std::size_t(0), face.positions.size(), [&](std::size_t i) {
     const Eigen::Vector3f normal = face.normals[i].cast<float>();
     Open& point = open_[i];
-    point.transfer.fill(0);
-    float open = 0, closed = 0;
+    point.seen.fill(0);
+    point.all.fill(0);
+    float open = 0, total = 0;
     ForHemispherePackets(sphere, face.positions[i].cast<float>() + kFaceLift_mm * normal, normal,
                          [&](std::size_t first, RayPacket& packet, const float* cosine) {
                            if (options.sees_face) scene.Occluded16(RaySet::kHead, packet);
                            for (std::size_t k = 0; k < RayPacket::kSize; ++k) {
                              if (!packet.valid[k]) continue;
-                             if (packet.far[k] < 0) {
-                               closed += cosine[k];
-                               continue;
-                             }
-                             open += cosine[k];
+                             const bool past_face = packet.far[k] >= 0;
+                             total += cosine[k];
+                             if (past_face) open += cosine[k];
                              for (std::size_t j = 0; j < kHarmonics; ++j) {
-                               point.transfer[j] +=
-                                   solid_angle * cosine[k] * harmonics[first + k][j];
+                               const float term = solid_angle * cosine[k] * harmonics[first + k][j];
+                               point.all[j] += term;
+                               if (past_face) point.seen[j] += term;
                              }
                            }
                          });
-    point.bounce = open > 0 ? options.interreflection * closed / open : 0;
+    point.share = total > 0 ? open / total : 0;
   });
 }
 
 std::vector<Eigen::Vector3f> BakedShadow::Relight(const HeadLight& light) const {
-  // Light at the vertices, and how much of it comes by way of the face.
-  std::vector<Eigen::Vector3f> all(open_.size());
+  // Light at the vertices, past the face and as if there were none.
+  struct VertexLight {
+    Eigen::Vector3f seen, all;
+  };
+  std::vector<VertexLight> lights(open_.size());
   tbb::parallel_for(std::size_t(0), open_.size(), [&](std::size_t i) {
-    Eigen::Vector3f sum = Eigen::Vector3f::Zero();
+    Eigen::Vector3f seen = Eigen::Vector3f::Zero(), all = Eigen::Vector3f::Zero();
     for (std::size_t j = 0; j < kHarmonics; ++j) {
-      sum += open_[i].transfer[j] * light.harmonics[j];
+      seen += open_[i].seen[j] * light.harmonics[j];
+      all += open_[i].all[j] * light.harmonics[j];
     }
-    all[i] = sum.cwiseMax(0.0f);
+    lights[i] = {seen, all};
   });
+  // Ringing of the harmonics could leave less light than the list has lost.
+  const auto ratio = [](float open, float lost) {
+    const float whole = std::max(open, lost);
+    return whole > 0 ? 1 - lost / whole : 1.0f;
+  };
   std::vector<Eigen::Vector3f> ratios(point_count_, Eigen::Vector3f::Ones());
   tbb::parallel_for(std::size_t(0), touched_.size(), [&](std::size_t i) {
     const Touched& point = touched_[i];
-    Eigen::Vector3f lost = Eigen::Vector3f::Zero();
+    Eigen::Vector3f lost_seen = Eigen::Vector3f::Zero(), lost_hidden = Eigen::Vector3f::Zero();
     for (std::uint32_t k = 0; k < point.blocked_count; ++k) {
       const Blocked& b = blocked_[point.first_blocked + k];
-      lost += b.cosine * light.cells[b.direction];
+      (b.hidden ? lost_hidden : lost_seen) += b.cosine * light.cells[b.direction];
     }
     const float w[3] = {1 - point.u - point.v, point.u, point.v};
-    Eigen::Vector3f without = Eigen::Vector3f::Zero();
-    float bounce = 0;
+    Eigen::Vector3f seen = Eigen::Vector3f::Zero(), all = Eigen::Vector3f::Zero();
+    float share = 0;
     for (int k = 0; k < 3; ++k) {
-      without += w[k] * all[std::size_t(point.vertices[k])];
-      bounce += w[k] * open_[std::size_t(point.vertices[k])].bounce;
+      const std::size_t vertex = std::size_t(point.vertices[k]);
+      seen += w[k] * lights[vertex].seen;
+      all += w[k] * lights[vertex].all;
+      share += w[k] * open_[vertex].share;
     }
+    const float weight = WeightOfOpenShare(share);
     for (int c = 0; c < 3; ++c) {
-      // Ringing of the harmonics could leave less light than the list has lost.
-      const float open = std::max(without[c], lost[c]);
-      const float back = bounce * open;
-      ratios[point.point][c] = open > 0 ? (open - lost[c] + back) / (open + back) : 1.0f;
+      ratios[point.point][c] = weight * ratio(seen[c], lost_seen[c]) +
+                               (1 - weight) * ratio(all[c], lost_seen[c] + lost_hidden[c]);
     }
   });
   return ratios;

@@ -37,7 +37,6 @@ struct CompositorOptions {
   int shadow_rays = 160;         // a pixel in paper mode (4 x 40 strata)
   int shadow_directions = 1024;  // of the sphere, baked; a multiple of 16
   double shadow_spacing_mm = 1;  // between baked points where frame and skin are close
-  double skin_albedo = 0.5;      // of light that the face returns to itself; 0: as the paper
   int samples_per_side = 2;      // 2: the paper's 2x2 samples a pixel
   bool adaptive = false;         // one sample where nothing changes
   int max_internal_bounces = 4;

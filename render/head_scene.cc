@@ -109,13 +109,12 @@ Result<HeadScene> HeadScene::Build(const Eyewear& eyewear, const TriangleMesh& f
   if (options.shadow == ShadowMode::kBaked) {
     ShadowOptions shadow;
     shadow.sees_face = options.shadow_sees_face;
-    shadow.interreflection = float(options.skin_albedo);
     shadow.directions = directions;
     shadow.spacing_near_mm = options.shadow_spacing_mm;
     shadow.spacing_far_mm = 3 * options.shadow_spacing_mm;
     baked_shadow = BakedShadow::Bake(scene, smooth_face, frame.mesh, shadow);
   } else if (options.shadow == ShadowMode::kPaper) {
-    paper_shadow.emplace(options.shadow_rays, options.shadow_sees_face, float(options.skin_albedo));
+    paper_shadow.emplace(options.shadow_rays, options.shadow_sees_face);
   }
 
   std::vector<Eigen::Vector3f> vertices, normals;

@@ -46,11 +46,13 @@ class BakedIrradiance {
   std::vector<float> head_share_;
 };
 
+// Weight of the reading that sees the face, by the share of a point's cosine-weighted hemisphere
+// that the face leaves open. In creases (the corners of the eyes) next to nothing is open and a
+// ratio of two such remainders is noise; there the frame alone decides.
+float WeightOfOpenShare(float open_share);
+
 struct ShadowOptions {
-  bool sees_face = true;  // S_noGlasses with the face as an occluder
-  // Albedo of the skin for light that skin returns to skin: a direction that meets the face brings
-  // this part of the mean light of the open ones instead of none (0: as the paper).
-  float interreflection = 0;
+  bool sees_face = true;                               // S_noGlasses with the face as an occluder
   int directions = 1024;                               // multiple of 16
   double spacing_near_mm = 1.0, spacing_far_mm = 3.0;  // of points, near the frame and elsewhere
 };
@@ -79,6 +81,7 @@ class BakedShadow {
   };
   struct Blocked {
     std::uint16_t direction;
+    bool hidden;  // by the face, with or without glasses
     float cosine;
   };
   struct Touched {
@@ -89,14 +92,15 @@ class BakedShadow {
   };
   // Light that arrives without glasses, at the vertices: it varies slowly.
   struct Open {
-    Harmonics transfer;
-    float bounce = 0;  // light from the face itself, in units of that
+    Harmonics seen;   // past the face
+    Harmonics all;    // as if there were no face
+    float share = 1;  // of the cosine-weighted hemisphere that the face leaves open
   };
   void BakeOpenLight(const EmbreeScene& scene, const TriangleMesh& face,
                      const ShadowOptions& options);
-  static void KeepWhatTheFaceLeaves(const EmbreeScene& scene,
-                                    const std::vector<Eigen::Vector3f>& sphere,
-                                    const Eigen::Vector3f& origin, std::vector<Blocked>& blocked);
+  static void MarkWhatTheFaceHides(const EmbreeScene& scene,
+                                   const std::vector<Eigen::Vector3f>& sphere,
+                                   const Eigen::Vector3f& origin, std::vector<Blocked>& blocked);
 
   std::size_t point_count_ = 0;
   std::vector<Lattice> lattices_;       // one a triangle

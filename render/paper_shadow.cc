@@ -31,8 +31,7 @@ void Fill(RayPacket& packet, const Eigen::Vector3f& origin, const Eigen::Matrix3
 
 }  // namespace
 
-PaperShadow::PaperShadow(int rays, bool sees_face, float interreflection)
-    : sees_face_(sees_face), interreflection_(interreflection) {
+PaperShadow::PaperShadow(int rays, bool sees_face) : sees_face_(sees_face) {
   for (std::uint32_t seed = 0; seed < kSets; ++seed) sets_.push_back(HemisphereStrata(rays, seed));
 }
 
@@ -55,32 +54,35 @@ Eigen::Vector3f PaperShadow::Ratio(const EmbreeScene& scene, const Environment& 
     any |= by_frame[p] != 0;
   }
   if (!any) return Eigen::Vector3f::Ones();
-  Eigen::Vector3f without = Eigen::Vector3f::Zero(), with = Eigen::Vector3f::Zero();
-  int open = 0, closed = 0;
+  // Light with and without glasses, past the face and as if there were none.
+  Eigen::Vector3f without = Eigen::Vector3f::Zero(), with = without;
+  Eigen::Vector3f without_face = without, with_face_gone = without;
+  int open = 0;
   const Eigen::Matrix3f world_from_local = world_from_head * basis;
   for (std::size_t p = 0; p < packets; ++p) {
     Fill(packet, point.position + kFaceLift_mm * point.normal, basis, set, p * RayPacket::kSize);
     if (sees_face_) scene.Occluded16(RaySet::kHead, packet);
     for (std::size_t k = 0; k < RayPacket::kSize; ++k) {
       if (!packet.valid[k]) continue;
-      if (packet.far[k] < 0) {
-        ++closed;
-        continue;
-      }
-      ++open;
       const Eigen::Vector3f light =
           environment.Radiance(world_from_local * set[p * RayPacket::kSize + k]);
+      const bool past_frame = !(by_frame[p] >> k & 1);
+      without_face += light;
+      if (past_frame) with_face_gone += light;
+      if (packet.far[k] < 0) continue;
+      ++open;
       without += light;
-      if (!(by_frame[p] >> k & 1)) with += light;
+      if (past_frame) with += light;
     }
   }
-  const float bounce = open > 0 ? interreflection_ * float(closed) / float(open) : 0;
-  Eigen::Vector3f ratio;
+  const float weight = WeightOfOpenShare(float(open) / float(set.size()));
+  const auto ratio = [](float a, float b) { return b > 0 ? a / b : 1.0f; };
+  Eigen::Vector3f result;
   for (int c = 0; c < 3; ++c) {
-    const float back = bounce * without[c];
-    ratio[c] = without[c] > 0 ? (with[c] + back) / (without[c] + back) : 1.0f;
+    result[c] = weight * ratio(with[c], without[c]) +
+                (1 - weight) * ratio(with_face_gone[c], without_face[c]);
   }
-  return ratio;
+  return result;
 }
 
 }  // namespace lorgnette

@@ -17,7 +17,7 @@ class PaperShadow {
  public:
   // rays: a point, stratified (render/directions.h). Jittered sets are made once and shared by
   // points with the same seed modulo kSets.
-  PaperShadow(int rays, bool sees_face, float interreflection);
+  PaperShadow(int rays, bool sees_face);
 
   // S_withGlasses / S_noGlasses by channel; exactly 1 where no ray meets the frame.
   Eigen::Vector3f Ratio(const EmbreeScene& scene, const Environment& environment,
@@ -28,7 +28,6 @@ class PaperShadow {
 
  private:
   bool sees_face_;
-  float interreflection_;
   std::vector<std::vector<Eigen::Vector3f>> sets_;
 };
 
