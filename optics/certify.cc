@@ -19,6 +19,7 @@ namespace {
 // Below this cylinder an axis is noise.
 constexpr double kLeastCylinderWithAxis_D = 0.01;
 constexpr double kEdgeTolerance_mm = 1e-9;        // rays against sags: the same number twice
+constexpr double kSegmentDepth_mm = 4;            // below a segment's top its addition is measured
 constexpr double kMagnificationTolerance = 1e-3;  // of the prediction on the axis
 constexpr double kLength_mm = 1e-12;              // rounding of a traced distance
 constexpr char kAnsi[] = "order; tolerance of ANSI Z80.1-2015";
@@ -33,12 +34,17 @@ class Examiner {
     if (!pencil) return Failure("certify: a ray near the optical centre does not pass the lens");
     Power(*pencil);
     Prism(*pencil);
+    LG_RETURN_IF_ERROR(Addition());
     LG_RETURN_IF_ERROR(Thickness());
     LG_RETURN_IF_ERROR(Magnification());
     return certificate_;
   }
 
  private:
+  LensKind Kind() const {
+    return order_.progressive ? LensKind::kProgressive : LensKind::kSingleVision;
+  }
+
   void Add(std::string quantity, std::string unit, double ordered, double measured,
            double tolerance, double numerical_error, std::string source) {
     certificate_.measurements.push_back({std::move(quantity), std::move(unit), ordered, measured,
@@ -57,12 +63,12 @@ class Examiner {
 
     const auto meridian = [&](const char* name, double ordered, const Eigen::Vector2d& u) {
       Add(name, "D", ordered, u.dot(pencil.power_D * u),
-          MeridianTolerance(LensKind::kSingleVision, Diopters(ordered)), error, kAnsi);
+          MeridianTolerance(Kind(), Diopters(ordered)), error, kAnsi);
     };
     meridian("back vertex power, axis meridian", sphere, along);
     meridian("back vertex power, across the axis", sphere + cylinder, across);
-    Add("cylinder", "D", cylinder, form.cylinder.value(),
-        CylinderTolerance(LensKind::kSingleVision, rx.cylinder), 2 * error, kAnsi);
+    Add("cylinder", "D", cylinder, form.cylinder.value(), CylinderTolerance(Kind(), rx.cylinder),
+        2 * error, kAnsi);
     if (std::abs(cylinder) >= kLeastCylinderWithAxis_D) {
       const double axis = rx.axis.value();
       const double difference = std::remainder(form.axis.value() - axis, 180.0);
@@ -73,14 +79,30 @@ class Examiner {
 
   void Prism(const PencilPower& pencil) {
     const EyePrescription& rx = order_.rx;
-    const double toward_nose = order_.eye == Eye::kRight ? -1 : 1;
     const double strongest =
         std::max(std::abs(rx.sphere.value()), std::abs(rx.sphere.value() + rx.cylinder.value()));
     const double tolerance = PrismTolerance(Diopters(strongest));
     Add("prism at the reference point, base in", "prism D", rx.prism_in.value(),
-        toward_nose * pencil.prism.x(), tolerance, pencil.prism_error, kAnsi);
+        NasalSign(order_.eye) * pencil.prism.x(), tolerance, pencil.prism_error, kAnsi);
     Add("prism at the reference point, base up", "prism D", rx.prism_up.value(), pencil.prism.y(),
         tolerance, pencil.prism_error, kAnsi);
+  }
+
+  // Front power at the near point less that at the vertex, for a multifocal front: vergence of a
+  // pencil that a single refraction sends into the lens along the front's normal.
+  Status Addition() {
+    if (!order_.segment && !order_.progressive) return {};
+    const Eigen::Vector2d near =
+        order_.progressive ? NearPoint(*order_.progressive, order_.eye)
+                           : Eigen::Vector2d(NasalSign(order_.eye) * order_.segment->inset_mm,
+                                             order_.segment->top_mm - kSegmentDepth_mm);
+    const auto far = MeasureFrontPower(lens_.front, {0, 0}, n_);
+    const auto below = MeasureFrontPower(lens_.front, near, n_);
+    if (!far || !below) return Failure("certify: no ray enters the front at the near point");
+    Add("addition of the front, near point less optical centre", "D", order_.rx.add.value(),
+        0.5 * (below->power_D - far->power_D).trace(), AddTolerance(order_.rx.add),
+        far->power_error_D + below->power_error_D, kAnsi);
+    return {};
   }
 
   // Distance between the surfaces along a ray parallel to the axis.
@@ -117,11 +139,15 @@ class Examiner {
     Add("least edge thickness", "mm", design_.min_edge_thickness_mm, least, kEdgeTolerance_mm,
         kLength_mm, "difference of the sags over the outline; numerical bound");
 
+    // Three points of the front's flattest meridian.
+    const Eigen::Matrix2d bend = lens_.front.VertexCurvature();
+    const double flattest = 0.5 * std::atan2(2 * bend(0, 1), bend(0, 0) - bend(1, 1)) + 0.5 * kPi;
     const double h = kPencilHeight_mm;
-    const auto hit = lens_.front.Intersect({{h, 0, -1}, {0, 0, 1}});
+    const auto hit =
+        lens_.front.Intersect({{h * std::cos(flattest), h * std::sin(flattest), -1}, {0, 0, 1}});
     if (!hit) return Failure("certify: no ray near the axis meets the front surface");
     const double z = hit->point.z();
-    Add("base curve (horizontal, true power)", "D", design_.front_power.value(),
+    Add("base curve (flattest front meridian, true power)", "D", design_.front_power.value(),
         1000 * (n_ - 1) * 2 * z / (h * h + z * z), kBaseCurveTolerance_D,
         1000 * (n_ - 1) * 2 * kLength_mm / (h * h), "design; tolerance of ANSI Z80.1-2015");
     return {};

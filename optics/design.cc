@@ -11,6 +11,7 @@
 #include "optics/gaze.h"
 #include "optics/outline.h"
 #include "optics/power_vector.h"
+#include "optics/prism.h"
 #include "optics/trace.h"
 
 namespace lorgnette {
@@ -59,10 +60,6 @@ Status CheckOrder(const LensOrder& order) {
     if (!p.allFinite()) return UsageError("lens order: contour: a point is not finite");
   }
   return {};
-}
-
-Eigen::Vector2d PrismInLensFrame(const LensOrder& order) {
-  return {NasalSign(order.eye) * order.rx.prism_in.value(), order.rx.prism_up.value()};
 }
 
 Error NoSag(const char* face, double curvature, double index, double rim_mm) {
@@ -295,9 +292,10 @@ Result<LensDesign> DesignLens(const LensOrder& order) {
   if (!std::isfinite(base.value())) {
     return UsageError("lens order: base curve: not a finite number");
   }
+  const Eigen::Vector2d prism =
+      PrismInLensFrame(order.eye, order.rx.prism_in.value(), order.rx.prism_up.value());
   LG_ASSIGN(const Surface front, MakeFront(order, base, outline));
-  Plan plan{order,   base, LensFrameMatrix(rx), GrindPrism(PrismInLensFrame(order), n),
-            outline, front};
+  Plan plan{order, base, LensFrameMatrix(rx), GrindPrism(prism, n), outline, front};
 
   LG_ASSIGN(Candidate found, order.aspheric_gaze_deg ? SolveAsphere(plan) : Solve(plan));
   LensDesign design;

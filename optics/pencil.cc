@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <functional>
 
 #include "optics/trace.h"
 
@@ -47,25 +48,29 @@ Extrapolated ToZero(const std::array<Eigen::Matrix2d, 3>& at) {
 
 }  // namespace
 
-std::optional<PencilPower> MeasurePower(const Lens& lens, double index) {
-  const Eigen::Vector3d ahead(0, 0, 1);
-  const LensTrace chief = TraceThrough(lens, {{0, 0, 0}, ahead}, index);
-  if (chief.status != RayStatus::kOk) return std::nullopt;
-  const Screen screen(chief.exit);
+namespace {
+
+// Vergence of a parallel pencil around `chief` after `trace`, across the leaving chief ray. The
+// columns of the result's basis are the lens frame's x, y turned with the ray.
+using RayMap = std::function<std::optional<Ray>(const Ray&)>;
+std::optional<PencilPower> VergenceOf(const RayMap& trace, const Ray& chief, double index_after) {
+  const auto leaving = trace(chief);
+  if (!leaving) return std::nullopt;
+  const Screen before(chief), screen(*leaving);
 
   std::array<Eigen::Matrix2d, 3> vergence;
   double h = kPencilHeight_mm;
   for (Eigen::Matrix2d& v : vergence) {
     Eigen::Matrix2d height, slope;
     for (int k = 0; k < 2; ++k) {
-      const Eigen::Vector3d step = h * Eigen::Vector3d::Unit(k);
-      const LensTrace plus = TraceThrough(lens, {step, ahead}, index);
-      const LensTrace minus = TraceThrough(lens, {-step, ahead}, index);
-      if (plus.status != RayStatus::kOk || minus.status != RayStatus::kOk) return std::nullopt;
-      height.col(k) = screen.Height(plus.exit) - screen.Height(minus.exit);
-      slope.col(k) = screen.Slope(plus.exit) - screen.Slope(minus.exit);
+      const Eigen::Vector3d step = h * (k == 0 ? before.x : before.y);
+      const auto plus = trace({chief.origin + step, chief.direction});
+      const auto minus = trace({chief.origin - step, chief.direction});
+      if (!plus || !minus) return std::nullopt;
+      height.col(k) = screen.Height(*plus) - screen.Height(*minus);
+      slope.col(k) = screen.Slope(*plus) - screen.Slope(*minus);
     }
-    v = -1000 * slope * height.inverse();
+    v = -1000 * index_after * slope * height.inverse();
     h /= 2;
   }
   const Extrapolated limit = ToZero(vergence);
@@ -74,9 +79,35 @@ std::optional<PencilPower> MeasurePower(const Lens& lens, double index) {
   result.power_D = limit.value;
   const double size = 1 + limit.value.cwiseAbs().maxCoeff();
   result.power_error_D = limit.error + 1000 * size * kRounding_mm / (kPencilHeight_mm / 4);
-  result.prism = 100 * chief.exit.direction.head<2>() / chief.exit.direction.z();
+  result.prism = 100 * leaving->direction.head<2>() / leaving->direction.z();
   result.prism_error = 100 * 8 * kRounding_mm;
   return result;
+}
+
+}  // namespace
+
+std::optional<PencilPower> MeasurePower(const Lens& lens, double index) {
+  const RayMap through = [&](const Ray& ray) -> std::optional<Ray> {
+    const LensTrace trace = TraceThrough(lens, ray, index);
+    return trace.status == RayStatus::kOk ? std::optional(trace.exit) : std::nullopt;
+  };
+  return VergenceOf(through, {{0, 0, 0}, {0, 0, 1}}, 1);
+}
+
+std::optional<PencilPower> MeasureFrontPower(const Surface& front, const Eigen::Vector2d& at,
+                                             double index) {
+  const auto jet = front.Jet(at.x(), at.y());
+  if (!jet) return std::nullopt;
+  const RayMap into = [&](const Ray& ray) -> std::optional<Ray> {
+    const auto hit = front.Intersect(ray);
+    if (!hit) return std::nullopt;
+    const auto inside = Refract(ray.direction, hit->normal, 1 / index);
+    return inside ? std::optional(Ray{hit->point, inside->normalized()}) : std::nullopt;
+  };
+  const Ray chief{{at.x(), at.y(), jet->z}, Eigen::Vector3d(-jet->zx, -jet->zy, 1).normalized()};
+  auto power = VergenceOf(into, chief, index);
+  if (power) power->prism.setZero();
+  return power;
 }
 
 std::optional<PencilMagnification> MeasureObserverMagnification(const Lens& lens, double index,

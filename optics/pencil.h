@@ -22,6 +22,11 @@ struct PencilPower {
 // Pencil parallel to the axis, chief ray through the front vertex. nullopt when a ray is lost.
 std::optional<PencilPower> MeasurePower(const Lens& lens, double index);
 
+// Power of one front surface at the point over (x, y): a pencil along its normal there, refracted
+// once, the vergence across it just inside. Prism is zero by construction.
+std::optional<PencilPower> MeasureFrontPower(const Surface& front, const Eigen::Vector2d& at,
+                                             double index);
+
 struct PencilMagnification {
   Eigen::Matrix2d magnification;  // as ObserverMagnification in optics/magnification.h
   double error = 0;
