@@ -9,6 +9,7 @@
 #include "tracking/anchored_clip.h"
 #include "tracking/face_model.h"
 #include "tracking/focal_prior.h"
+#include "tracking/iris.h"
 
 namespace lorgnette {
 namespace {
@@ -26,6 +27,9 @@ constexpr double kIndependentFrames = 10;
 // whose most frontal frame is turned by some angle.
 constexpr double kZeroYawSigma = RadiansFromDegrees(2);
 constexpr double kMeshYawSigma = RadiansFromDegrees(0.7), kMeshYawSigmaByAngle = 0.5;
+// Standard errors of the distance between the pupils, from the lids' corners and, beside their
+// scatter, from the irises (edges of lids and lashes; eyes that converge).
+constexpr double kLidsDistanceSigmaMm = 1.5, kIrisDistanceSigmaMm = 0.5;
 constexpr double kFieldDoubt = 1;  // weight of no change, in anchors
 
 // Yaw of the face against the line from the camera to it: what the network sees.
@@ -70,6 +74,23 @@ double TrustInNetworkYaw(const std::vector<double>& network_yaw) {
   const double mesh_sigma = kMeshYawSigma + kMeshYawSigmaByAngle * most_frontal;
   const double mesh = mesh_sigma * mesh_sigma, network = kZeroYawSigma * kZeroYawSigma;
   return mesh / (mesh + network);
+}
+
+// The pupils between the lids, corrected by the irises: their distance, as far as it is surer than
+// the lids', and their height. Where the eyes look sideways both irises move alike, so that the
+// middle stays that of the lids.
+Pupils WithIrises(const Pupils& lids, const IrisSummary& irises) {
+  const double lids_variance = kLidsDistanceSigmaMm * kLidsDistanceSigmaMm;
+  const double iris_variance = irises.distance_sigma_mm * irises.distance_sigma_mm +
+                               kIrisDistanceSigmaMm * kIrisDistanceSigmaMm;
+  const double trust = lids_variance / (lids_variance + iris_variance);
+  const double distance = trust * irises.pupils.distance() + (1 - trust) * lids.distance();
+  const Eigen::Vector3d lids_middle = (lids.right + lids.left) / 2;
+  const double iris_height = (irises.pupils.right.y() + irises.pupils.left.y()) / 2;
+  const double height = trust * iris_height + (1 - trust) * lids_middle.y();
+  const Eigen::Vector3d middle(lids_middle.x(), height, lids_middle.z());
+  const Eigen::Vector3d half(distance / 2, 0, 0);
+  return {middle - half, middle + half};
 }
 
 // Poses for frames that the anchors missed: the landmark pose, corrected as in the nearest frame
@@ -172,15 +193,32 @@ HeadTrack FitClip(const std::vector<FollowedFrame>& frames, const CanonicalMesh&
           .toRotationMatrix();
   for (Eigen::Vector3d& p : points) p = turn(p);
   for (Eigen::Isometry3d& pose : poses) pose = turn.Rebased(pose);
+  Pupils pupils = PupilsOf(points);
+  std::vector<IrisReading> irises(frames.size());
+  for (std::size_t f = 0; f < frames.size(); ++f) {
+    if (landmarks[f] == nullptr) continue;
+    const FaceCrop& crop = frames[f].crop;
+    irises[f].right = FindIris(crop, track.camera, poses[f], pupils.right, pd_mm);
+    irises[f].left = FindIris(crop, track.camera, poses[f], pupils.left, pd_mm);
+  }
+  if (const auto seen = SummariseIrises(irises, track.camera, poses, pupils)) {
+    track.iris_pd_mm = seen->pd_mm;
+    track.iris_pd_sigma_mm = seen->pd_sigma_mm;
+    pupils = WithIrises(pupils, *seen);
+  }
+  const Similarity size = HeadFromPupils(pupils, pd_mm);
+  for (Eigen::Vector3d& p : points) p = size(p);
+  for (Eigen::Isometry3d& pose : poses) pose = size.Rebased(pose);
+  track.pupil_right = size(pupils.right);
+  track.pupil_left = size(pupils.left);
   ComputeVertexNormals(track.face);
-  const Pupils pupils = PupilsOf(points);
-  track.pupil_right = pupils.right;
-  track.pupil_left = pupils.left;
   for (std::size_t f = 0; f < frames.size(); ++f) {
     TrackedFrame& out = track.frames.emplace_back();
     out.time_s = frames[f].time_s;
     out.found = landmarks[f] != nullptr;
     out.camera_from_head = poses[f];
+    if (irises[f].right) out.iris_right = irises[f].right->pixel.cast<float>();
+    if (irises[f].left) out.iris_left = irises[f].left->pixel.cast<float>();
   }
   return track;
 }

@@ -89,7 +89,14 @@ Similarity HeadFromPoints(const std::vector<Eigen::Vector3d>& points,
   half.angle() /= 2;
   head.rotation = half.toRotationMatrix() * head.rotation;
   for (std::size_t i = 0; i < points.size(); ++i) turned[i] = head.rotation * points[i];
-  const Pupils pupils = PupilsOf(turned);
+  const Similarity size = HeadFromPupils(PupilsOf(turned), pd_mm);
+  head.scale = size.scale;
+  head.shift = size.shift;
+  return head;
+}
+
+Similarity HeadFromPupils(const Pupils& pupils, double pd_mm) {
+  Similarity head;
   head.scale = pd_mm / pupils.distance();
   head.shift = -head.scale * (pupils.right + pupils.left) / 2;
   return head;

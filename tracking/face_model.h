@@ -40,6 +40,9 @@ struct Similarity {
 Similarity HeadFromPoints(const std::vector<Eigen::Vector3d>& points,
                           const CanonicalMesh& canonical, double pd_mm);
 
+// Only size and origin: the pupils `pd_mm` apart, the origin midway between them.
+Similarity HeadFromPupils(const Pupils& pupils, double pd_mm);
+
 // The canonical face in head space, its eyes brought forward to where people have them.
 std::vector<Eigen::Vector3d> CanonicalHead(const CanonicalMesh& canonical, double pd_mm);
 

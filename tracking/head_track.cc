@@ -143,6 +143,17 @@ TrackedFrame ReadFrame(JsonReader& json, int vertices) {
   if (!frame.found) return frame;
   frame.camera_from_head = ReadPose(json, "camera_from_head");
   frame.residual_px = float(json.NumberOr("residual_px", 0, 0, kHuge));
+  const auto read_iris = [&json](const std::string& key, std::optional<Eigen::Vector2f>& iris) {
+    if (!json.Has(key)) return;
+    const std::vector<double> v = json.Numbers(key);
+    if (v.size() != 2 || !AllBounded(v)) {
+      json.Fail(key, fmt::format("got {} numbers, want two, in pixels", v.size()));
+      return;
+    }
+    iris = Eigen::Vector2f(float(v[0]), float(v[1]));
+  };
+  read_iris("iris_right", frame.iris_right);
+  read_iris("iris_left", frame.iris_left);
   if (json.Has("vertices")) {
     for (const Eigen::Vector3d& p : ReadPoints(json, "vertices", vertices)) {
       frame.vertices.push_back(p.cast<float>());
@@ -173,6 +184,8 @@ Result<HeadTrack> ReadHeadTrack(const std::string& path) {
   track.pupil_left = {track.pd_mm / 2, 0, 0};
   if (json.Has("pupil_right")) track.pupil_right = ReadPoints(json, "pupil_right", 1)[0];
   if (json.Has("pupil_left")) track.pupil_left = ReadPoints(json, "pupil_left", 1)[0];
+  track.iris_pd_mm = json.NumberOr("iris_pd_mm", 0, 0, 200);
+  track.iris_pd_sigma_mm = json.NumberOr("iris_pd_sigma_mm", 0, 0, 200);
   track.face = ReadFace(json.Object("face"));
   ComputeVertexNormals(track.face);
   double last = -kHuge;
@@ -197,6 +210,10 @@ Status WriteHeadTrack(const HeadTrack& track, const std::string& path) {
   json["pd_mm"] = track.pd_mm;
   json["pupil_right"] = {track.pupil_right.x(), track.pupil_right.y(), track.pupil_right.z()};
   json["pupil_left"] = {track.pupil_left.x(), track.pupil_left.y(), track.pupil_left.z()};
+  if (track.iris_pd_mm > 0) {
+    json["iris_pd_mm"] = Rounded(track.iris_pd_mm);
+    json["iris_pd_sigma_mm"] = Rounded(track.iris_pd_sigma_mm);
+  }
   Json& face = json["face"];
   face["positions"] = JsonOf(track.face.positions);
   face["triangles"] = Json::array();
@@ -217,6 +234,10 @@ Status WriteHeadTrack(const HeadTrack& track, const std::string& path) {
     if (!frame.found) continue;
     out["camera_from_head"] = JsonOf(frame.camera_from_head);
     out["residual_px"] = Rounded(double(frame.residual_px));
+    if (const auto& i = frame.iris_right)
+      out["iris_right"] = {Rounded(double(i->x())), Rounded(double(i->y()))};
+    if (const auto& i = frame.iris_left)
+      out["iris_left"] = {Rounded(double(i->x())), Rounded(double(i->y()))};
     if (!frame.vertices.empty()) out["vertices"] = JsonOf(frame.vertices);
   }
   return WriteFileAtomically(path, json.dump() + "\n");

@@ -6,6 +6,7 @@
 #pragma once
 
 #include <Eigen/Geometry>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -22,7 +23,9 @@ struct TrackedFrame {
   // The face in this frame, head space, one point a vertex of `face` (expression included); empty
   // when the neutral mesh serves.
   std::vector<Eigen::Vector3f> vertices;
-  float residual_px = 0;  // RMS reprojection error of the landmarks
+  float residual_px = 0;  // RMS distance of the landmarks from the rigid face
+  // Centres of the irises, px; none when closed, turned away, or not looked for.
+  std::optional<Eigen::Vector2f> iris_right, iris_left;
 };
 
 struct HeadTrack {
@@ -30,6 +33,9 @@ struct HeadTrack {
   TriangleMesh face;  // personal neutral mesh, 468 vertices of the canonical topology, head space
   double pd_mm = 64;  // the scale in use
   Eigen::Vector3d pupil_right{-32, 0, 0}, pupil_left{32, 0, 0};  // corneal apices, head space
+  // The same distance if the irises are of the usual 11.7 mm, with its standard error; 0: unknown.
+  // A check on pd_mm, which it does not change.
+  double iris_pd_mm = 0, iris_pd_sigma_mm = 0;
   std::vector<TrackedFrame> frames;
 
   int frames_without_face() const;
