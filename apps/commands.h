@@ -25,5 +25,6 @@ void AddMeasureCommand(CLI::App& program, CommandContext& context);
 void AddFramesCommand(CLI::App& program, CommandContext& context);
 void AddComposeCommand(CLI::App& program, CommandContext& context);
 void AddValidateCommand(CLI::App& program, CommandContext& context);
+void AddServeCommand(CLI::App& program, CommandContext& context);
 
 }  // namespace lorgnette

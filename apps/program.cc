@@ -47,6 +47,7 @@ int RunProgram(int argc, const char* const* argv, std::ostream& out, std::ostrea
   AddFramesCommand(program, context);
   AddComposeCommand(program, context);
   AddValidateCommand(program, context);
+  AddServeCommand(program, context);
 
   std::vector<std::string> arguments(argv + std::min(argc, 1), argv + argc);
   std::reverse(arguments.begin(), arguments.end());  // the order that the parser takes
