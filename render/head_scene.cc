@@ -111,7 +111,7 @@ Result<HeadScene> HeadScene::Build(const Eyewear& eyewear, const TriangleMesh& f
     shadow.sees_face = options.shadow_sees_face;
     shadow.directions = directions;
     shadow.spacing_near_mm = options.shadow_spacing_mm;
-    shadow.spacing_far_mm = 3 * options.shadow_spacing_mm;
+    shadow.spacing_far_mm = 4 * options.shadow_spacing_mm;
     baked_shadow = BakedShadow::Bake(scene, smooth_face, frame.mesh, shadow);
   } else if (options.shadow == ShadowMode::kPaper) {
     paper_shadow.emplace(options.shadow_rays, options.shadow_sees_face);

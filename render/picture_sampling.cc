@@ -9,18 +9,30 @@ namespace {
 
 using Texel = Eigen::Map<const Eigen::Vector3f>;
 
-// Catmull-Rom weights of four neighbours, sharpened by [-1 26 -1] / 24: six taps.
-void SharpCubicWeights(float f, float w[6]) {
-  const float f2 = f * f, f3 = f2 * f;
-  const float c[4] = {-0.5f * f3 + f2 - 0.5f * f, 1.5f * f3 - 2.5f * f2 + 1,
-                      -1.5f * f3 + 2 * f2 + 0.5f * f, 0.5f * f3 - 0.5f * f2};
-  constexpr float kSide = -1.0f / 24, kMiddle = 26.0f / 24;
-  w[0] = kSide * c[0];
-  w[1] = kMiddle * c[0] + kSide * c[1];
-  w[2] = kMiddle * c[1] + kSide * (c[0] + c[2]);
-  w[3] = kMiddle * c[2] + kSide * (c[1] + c[3]);
-  w[4] = kMiddle * c[3] + kSide * c[2];
-  w[5] = kSide * c[3];
+constexpr int kTaps = 8;
+
+// Weights of eight neighbours of a position `f` past the fourth of them: Keys' six-point cubic
+// (fourth-order convergence; IEEE Trans. ASSP 29(6), 1981), over samples that two terms of the
+// inverse of a box mean have sharpened: 1 - d^2 / 24 + 3 d^4 / 640, d^2 the second difference.
+void SharpCubicWeights(float f, float w[kTaps]) {
+  const auto keys = [](float x) {
+    x = std::abs(x);
+    if (x < 1) return ((4.0f / 3) * x - 7.0f / 3) * x * x + 1;
+    if (x < 2) return ((-7.0f / 12) * x + 3) * x * x - (59.0f / 12) * x + 2.5f;
+    if (x < 3) return ((1.0f / 12) * x - 2.0f / 3) * x * x + 1.75f * x - 1.5f;
+    return 0.0f;
+  };
+  float c[kTaps + 4];
+  for (int k = 0; k < kTaps + 4; ++k) c[k] = keys(float(k - 5) - f);
+  constexpr float kFourth = 3.0f / 640, kSecond = -1.0f / 24;
+  constexpr float kFar = kFourth, kSide = kSecond - 4 * kFourth,
+                  kMiddle = 1 - 2 * kSecond + 6 * kFourth;
+  float sum = 0;
+  for (int k = 0; k < kTaps; ++k) {
+    w[k] = kFar * (c[k] + c[k + 4]) + kSide * (c[k + 1] + c[k + 3]) + kMiddle * c[k + 2];
+    sum += w[k];
+  }
+  for (int k = 0; k < kTaps; ++k) w[k] /= sum;
 }
 
 }  // namespace
@@ -35,32 +47,32 @@ Eigen::Vector3f SampleBilinear(const ImageRgbF& image, float x, float y) {
          fy * ((1 - fx) * Texel(image.at(x0, y1)) + fx * Texel(image.at(x1, y1)));
 }
 
-Eigen::Vector3f SampleBicubic(const ImageRgbF& image, float x, float y) {
+Eigen::Vector3f SampleSharp(const ImageRgbF& image, float x, float y) {
   const float column = std::clamp(x - 0.5f, 0.0f, float(image.width - 1));
   const float row = std::clamp(y - 0.5f, 0.0f, float(image.height - 1));
-  const int x0 = int(column) - 2, y0 = int(row) - 2;
-  float wx[6], wy[6];
-  SharpCubicWeights(column - float(x0 + 2), wx);
-  SharpCubicWeights(row - float(y0 + 2), wy);
-  Eigen::Vector3f sum = Eigen::Vector3f::Zero();
-  if (x0 >= 0 && y0 >= 0 && x0 + 5 < image.width && y0 + 5 < image.height) {
-    for (int j = 0; j < 6; ++j) {
+  const int x0 = int(column) - 3, y0 = int(row) - 3;
+  float wx[kTaps], wy[kTaps];
+  SharpCubicWeights(column - float(x0 + 3), wx);
+  SharpCubicWeights(row - float(y0 + 3), wy);
+  // Four lanes at a time: the fourth reads on into the next pixel and is dropped.
+  if (x0 >= 0 && y0 >= 0 && x0 + kTaps < image.width && y0 + kTaps <= image.height) {
+    Eigen::Vector4f sum = Eigen::Vector4f::Zero();
+    for (int j = 0; j < kTaps; ++j) {
       const float* texel = image.at(x0, y0 + j);
-      float r = 0, g = 0, b = 0;
-      for (int i = 0; i < 6; ++i, texel += 3) {
-        r += wx[i] * texel[0];
-        g += wx[i] * texel[1];
-        b += wx[i] * texel[2];
+      Eigen::Vector4f line = Eigen::Vector4f::Zero();
+      for (int i = 0; i < kTaps; ++i, texel += 3) {
+        line += wx[i] * Eigen::Map<const Eigen::Vector4f>(texel);
       }
-      sum += wy[j] * Eigen::Vector3f(r, g, b);
+      sum += wy[j] * line;
     }
-  } else {
-    for (int j = 0; j < 6; ++j) {
-      for (int i = 0; i < 6; ++i) {
-        sum += wx[i] * wy[j] *
-               Texel(image.at(std::clamp(x0 + i, 0, image.width - 1),
-                              std::clamp(y0 + j, 0, image.height - 1)));
-      }
+    return sum.head<3>().cwiseMax(0.0f);
+  }
+  Eigen::Vector3f sum = Eigen::Vector3f::Zero();
+  for (int j = 0; j < kTaps; ++j) {
+    for (int i = 0; i < kTaps; ++i) {
+      sum += wx[i] * wy[j] *
+             Texel(image.at(std::clamp(x0 + i, 0, image.width - 1),
+                            std::clamp(y0 + j, 0, image.height - 1)));
     }
   }
   return sum.cwiseMax(0.0f);

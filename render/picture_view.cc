@@ -2,6 +2,7 @@
 #include "render/picture_view.h"
 
 #include <tbb/parallel_for.h>
+#include <tbb/task_arena.h>
 
 #include <algorithm>
 #include <cmath>
@@ -10,6 +11,13 @@ namespace lorgnette {
 namespace {
 
 constexpr float kVisibilityLift_mm = 0.6f;
+
+// Runs `make` once. A thread that waits for the parallel loops in it takes up no other tile's work,
+// which could ask for the same thing again.
+template <typename Make>
+void Once(std::once_flag& flag, Make&& make) {
+  std::call_once(flag, [&] { tbb::this_task_arena::isolate(make); });
+}
 
 }  // namespace
 
@@ -45,7 +53,7 @@ Eigen::Vector3f PictureView::Head(const SceneHit& hit, const Eigen::Vector3f& po
                                   long& filled) const {
   const Eigen::Vector2f p = Project(point);
   if (hit.object == SceneObject::kFace) {
-    std::call_once(face_once_, [&] { FillFace(); });
+    Once(face_once_, [&] { FillFace(); });
     const Eigen::Vector3i& t = triangles_[hit.triangle];
     const bool vertices_seen = vertex_seen_[std::size_t(t[0])] && vertex_seen_[std::size_t(t[1])] &&
                                vertex_seen_[std::size_t(t[2])];
@@ -56,7 +64,7 @@ Eigen::Vector3f PictureView::Head(const SceneHit& hit, const Eigen::Vector3f& po
              hit.v * vertex_colours_[std::size_t(t[2])];
     }
   }
-  return SampleBicubic(input_, p.x(), p.y());
+  return SampleSharp(input_, p.x(), p.y());
 }
 
 bool PictureView::Background(const Eigen::Vector3f& origin, const Eigen::Vector3f& direction,
@@ -73,17 +81,17 @@ bool PictureView::Background(const Eigen::Vector3f& origin, const Eigen::Vector3
   const Eigen::Vector3f sight = point - eye_;
   const float distance = sight.norm();
   if (InsidePicture(p) && !scene_.Occluded(RaySet::kHead, eye_, sight / distance, 0, distance)) {
-    colour = SampleBicubic(input_, p.x(), p.y());
+    colour = SampleSharp(input_, p.x(), p.y());
     return true;
   }
-  std::call_once(background_once_, [&] { FillBackground(); });
+  Once(background_once_, [&] { FillBackground(); });
   ++filled;
   colour = background_.front().Sample(p.x(), p.y());
   return true;
 }
 
 const Eigen::Vector3f& PictureView::face_mean() const {
-  std::call_once(face_once_, [&] { FillFace(); });
+  Once(face_once_, [&] { FillFace(); });
   return face_mean_;
 }
 
@@ -104,7 +112,8 @@ void PictureView::FillFace() const {
     sum += vertex_colours_[i].cast<double>();
     ++count;
   }
-  face_mean_ = count > 0 ? (sum / count).cast<float>() : Eigen::Vector3f::Constant(0.25f);
+  face_mean_ = Eigen::Vector3f::Constant(0.25f);
+  if (count > 0) face_mean_ = (sum / count).cast<float>();
 
   // Colour spreads over the mesh from what was seen, one ring of vertices a round.
   std::vector<float> weight(n, 0.0f);
