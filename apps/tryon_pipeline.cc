@@ -17,6 +17,7 @@
 #include "base/atomic_file.h"
 #include "base/progress.h"
 #include "geometry/frame_io.h"
+#include "geometry/head_occluder.h"
 #include "render/environment.h"
 #include "render/image_io.h"
 #include "render/video_io.h"
@@ -56,6 +57,50 @@ Result<Environment> ReadEnvironment(const TryonRequest& request, TryonResult& re
   return environment;
 }
 
+// The tracked frames of a clip by time, since a track may hold a part of it.
+class TrackLookup {
+ public:
+  TrackLookup(const HeadTrack& track, double frame_rate)
+      : track_(track), tolerance_s_(0.25 / frame_rate) {}
+  const TrackedFrame* At(double time_s) const {
+    const auto& frames = track_.frames;
+    const auto after = std::lower_bound(
+        frames.begin(), frames.end(), time_s - tolerance_s_,
+        [](const TrackedFrame& frame, double time) { return frame.time_s < time; });
+    if (after == frames.end() || after->time_s > time_s + tolerance_s_) return nullptr;
+    return &*after;
+  }
+
+ private:
+  const HeadTrack& track_;
+  double tolerance_s_;
+};
+
+// Cuts a track down to the frames of a range of the video, and says when one is missing. What the
+// frames' times are, only the video knows.
+Status KeepRange(const TryonRequest& request, HeadTrack& track) {
+  LG_ASSIGN(VideoReader reader, VideoReader::Open(request.video));
+  const TrackLookup lookup(track, reader.info().frame_rate);
+  std::vector<TrackedFrame> kept;
+  long number = 0;
+  for (; number <= request.frames.last; ++number) {
+    LG_ASSIGN(const std::optional<VideoFrame> frame, reader.Next());
+    if (!frame) break;
+    if (!request.frames.Contains(number)) continue;
+    const TrackedFrame* tracked = lookup.At(frame->time_s);
+    if (tracked == nullptr) {
+      return Failure(fmt::format("{}: has no frame at {:.3f} s of {}", request.track, frame->time_s,
+                                 request.video));
+    }
+    kept.push_back(*tracked);
+  }
+  if (kept.empty()) {
+    return UsageError(fmt::format("--frames: {} has only {} frames", request.video, number));
+  }
+  track.frames = std::move(kept);
+  return {};
+}
+
 Result<HeadTrack> GetTrack(const TryonRequest& request, const VideoInfo& video,
                            const Prescription& rx) {
   if (request.track.empty()) {
@@ -77,27 +122,9 @@ Result<HeadTrack> GetTrack(const TryonRequest& request, const VideoInfo& video,
     return Failure(fmt::format("{}: was made for a PD of {} mm, and {} says {}; track again",
                                request.track, track.pd_mm, request.rx, rx.pd_mm()));
   }
+  if (!request.frames.IsWhole()) LG_RETURN_IF_ERROR(KeepRange(request, track));
   return track;
 }
-
-// The tracked frames of a clip by time, since a track may hold a part of it.
-class TrackLookup {
- public:
-  TrackLookup(const HeadTrack& track, double frame_rate)
-      : track_(track), tolerance_s_(0.25 / frame_rate) {}
-  const TrackedFrame* At(double time_s) const {
-    const auto& frames = track_.frames;
-    const auto after = std::lower_bound(
-        frames.begin(), frames.end(), time_s - tolerance_s_,
-        [](const TrackedFrame& frame, double time) { return frame.time_s < time; });
-    if (after == frames.end() || after->time_s > time_s + tolerance_s_) return nullptr;
-    return &*after;
-  }
-
- private:
-  const HeadTrack& track_;
-  double tolerance_s_;
-};
 
 void SummarizePoses(const HeadTrack& track, TryonResult& result) {
   bool any = false;
@@ -147,9 +174,7 @@ class Assembly {
         lookup_(track, reader.info().frame_rate),
         chosen_(ChooseStills(track, request.stills)),
         result_(result),
-        progress_("rendering", "frames",
-                  request.frames.Count(
-                      static_cast<long>(std::max<std::size_t>(track.frames.size(), 1)))) {}
+        progress_("rendering", "frames", static_cast<long>(track.frames.size())) {}
 
   Status Run() {
     // Nested parallelism of the compositor may not steal another stage into this stage's time.
@@ -322,6 +347,7 @@ Result<TryonResult> RunTryon(const TryonRequest& request) {
   result.pd_mm = track.pd_mm;
   SummarizePoses(track, result);
 
+  TriangleMesh occluder;
   {
     const Timer timer(seconds.design);
     LG_ASSIGN(const Fit fit,
@@ -330,10 +356,11 @@ Result<TryonResult> RunTryon(const TryonRequest& request) {
     result.temple_opening_deg = fit.temple_opening_deg;
     LG_ASSIGN(result.eyewear, MakeEyewear(fit, result.prescription, track.pupil_right,
                                           track.pupil_left, request.eyewear));
+    occluder = BuildHeadOccluder(track.face, fit.ears);
   }
   const auto prepare = [&] {
     const Timer timer(seconds.prepare);
-    return Compositor::Create(*result.eyewear, track.face, TriangleMesh{}, environment,
+    return Compositor::Create(*result.eyewear, track.face, occluder, environment,
                               request.compositor);
   };
   LG_ASSIGN(Compositor compositor, prepare());
