@@ -1,10 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "optics/lens_kernel.h"
 
+#include <array>
 #include <cmath>
 #include <type_traits>
 #include <variant>
 
+#include "base/units.h"
 #include "optics/lens_kernel_job.h"
 #include "optics/lens_kernel_scalar.h"
 #include "optics/ray.h"
@@ -17,6 +19,7 @@
 #include <hwy/highway.h>
 
 #include "optics/lens_kernel_face-inl.h"
+#include "optics/lens_kernel_graph-inl.h"
 
 HWY_BEFORE_NAMESPACE();
 namespace lorgnette::kernel {
@@ -156,7 +159,7 @@ HWY_INLINE void TraceOne(D d, const First& first, const Second& second, const Le
 
 // One register of rays inside the glass to one face.
 template <class D, class T = hn::TFromD<D>>
-HWY_INLINE void FaceOne(D d, const GeneralFace<D, false>& face, const FaceJob<T>& job,
+HWY_INLINE void FaceOne(D d, const AnyFace<D>& face, const FaceJob<T>& job,
                         const RayArrays<const T>& in, const FaceBatchOutput<T>& out,
                         std::size_t i) {
   const auto dir = LoadDirections(d, in, i);
@@ -251,17 +254,20 @@ HWY_INLINE void TraceLensOf(const LensJob<T>& job) {
   using D = hn::ScalableTag<T>;
   using Sphere = SphereFace<D>;
   using Upright = GeneralFace<D, true>;
-  using Tilted = GeneralFace<D, false>;
-  if (job.first.tilted || job.second.tilted) return TraceAll<Tilted, Tilted>(d, job);
-  if (job.first.torus) return TraceAll<Upright, Upright>(d, job);
-  if (job.second.torus) return TraceAll<Sphere, Upright>(d, job);
+  using Any = AnyFace<D>;
+  const auto upright = [](const FaceParams<T>& f) {
+    return !f.tilted && (f.kind == FaceKind::kSphere || f.kind == FaceKind::kTorus);
+  };
+  if (!upright(job.first) || !upright(job.second)) return TraceAll<Any, Any>(d, job);
+  if (job.first.kind == FaceKind::kTorus) return TraceAll<Upright, Upright>(d, job);
+  if (job.second.kind == FaceKind::kTorus) return TraceAll<Sphere, Upright>(d, job);
   TraceAll<Sphere, Sphere>(d, job);
 }
 
 template <typename T>
 HWY_INLINE void TraceFaceOf(const FaceJob<T>& job) {
   const hn::ScalableTag<T> d;
-  const GeneralFace<hn::ScalableTag<T>, false> face(d, job.face, job.sense);
+  const AnyFace<hn::ScalableTag<T>> face(d, job.face, job.sense);
   const std::size_t lanes = hn::Lanes(d);
   std::size_t i = 0;
   for (; i + lanes <= job.n; i += lanes) FaceOne(d, face, job, job.in, job.out, i);
@@ -306,29 +312,88 @@ HWY_EXPORT(TargetName);
 
 namespace {
 
+// Sag along the corridor of a progressive surface as a Chebyshev series in 2 u - 1.
+struct Corridor {
+  std::array<double, kCorridorTerms> terms{};
+  double far = 0, add = 0, start = 0, length = 0;  // of the surface that it belongs to
+};
+const Corridor& CorridorOf(const ProgressiveSurface& s) {
+  // Batches come many to a lens: the last two surfaces are kept, a pair of lenses.
+  thread_local std::array<Corridor, 2> kept;
+  thread_local std::size_t oldest = 0;
+  for (const Corridor& c : kept) {
+    if (c.length == s.length() && c.far == s.curvature_far() && c.add == s.curvature_add() &&
+        c.start == s.start()) {
+      return c;
+    }
+  }
+  Corridor& made = kept[oldest];
+  oldest = 1 - oldest;
+  made = {{}, s.curvature_far(), s.curvature_add(), s.start(), s.length()};
+  constexpr double n = kCorridorTerms;
+  for (std::size_t k = 0; k < kCorridorTerms; ++k) {
+    const double x = std::cos(kPi * (double(k) + 0.5) / n);
+    const auto jet = s.OwnJet(0, s.start() - s.length() * 0.5 * (1 + x));
+    const double z = jet ? jet->z : 0;
+    for (std::size_t i = 0; i < kCorridorTerms; ++i) {
+      made.terms[i] += (i == 0 ? 1 : 2) / n * z * std::cos(kPi * double(i) * (double(k) + 0.5) / n);
+    }
+  }
+  return made;
+}
+
+template <typename T>
+void SetProgressive(const ProgressiveSurface& s, FaceParams<T>& f) {
+  f.kind = FaceKind::kProgressive;
+  f.c = static_cast<T>(s.curvature_far());
+  f.add = static_cast<T>(s.curvature_add());
+  f.start = static_cast<T>(s.start());
+  f.length = static_cast<T>(s.length());
+  const double end_sine =
+      s.curvature_far() * (s.start() - s.length()) - s.curvature_add() * s.length() * 0.5;
+  f.end_sine = static_cast<T>(end_sine);
+  const auto end = s.OwnJet(0, s.start() - s.length());
+  f.end_sag = static_cast<T>(end ? end->z : 0);
+  const Corridor& corridor = CorridorOf(s);
+  for (std::size_t i = 0; i < kCorridorTerms; ++i) {
+    f.corridor[i] = static_cast<T>(corridor.terms[i]);
+  }
+}
+
 // `rotation` turns the surface's own axes into the lens frame's.
 template <typename T>
 FaceParams<T> ParamsOf(const Surface& surface, double vertex_z, const Eigen::Matrix3d& rotation) {
   FaceParams<T> f;
   f.vertex_z = static_cast<T>(vertex_z);
   f.tilted = !rotation.isIdentity(0);
-  const Eigen::Vector3d axis = rotation.col(2);
-  f.ax = static_cast<T>(axis.x());
-  f.ay = static_cast<T>(axis.y());
-  f.az = static_cast<T>(axis.z());
+  double angle = kPi / 2;  // of `g`, from the own +x
   if (const auto* sphere = std::get_if<SphereSurface>(&surface.shape())) {
     f.c = static_cast<T>(sphere->curvature);
   } else if (const auto* torus = std::get_if<TorusSurface>(&surface.shape())) {
-    f.torus = torus->curvature_generator != torus->curvature_across;
+    const bool round = torus->curvature_generator == torus->curvature_across;
+    f.kind = round ? FaceKind::kSphere : FaceKind::kTorus;
     f.c = static_cast<T>(torus->curvature_across);
     f.generator = static_cast<T>(torus->curvature_generator);
     f.delta = static_cast<T>(torus->curvature_generator - torus->curvature_across);
-    const Eigen::Vector3d g = rotation * Eigen::Vector3d(std::cos(torus->generator_angle),
-                                                         std::sin(torus->generator_angle), 0);
-    f.gx = static_cast<T>(g.x());
-    f.gy = static_cast<T>(g.y());
-    f.gz = static_cast<T>(g.z());
+    angle = torus->generator_angle;
+  } else if (const auto* conic = std::get_if<ConicSurface>(&surface.shape())) {
+    f.kind = FaceKind::kConic;
+    f.c = static_cast<T>(conic->curvature);
+    f.conic = static_cast<T>(1 + conic->conic);
+    for (std::size_t i = 0; i < f.even.size(); ++i) f.even[i] = static_cast<T>(conic->even[i]);
+  } else if (const auto* progressive = std::get_if<ProgressiveSurface>(&surface.shape())) {
+    SetProgressive(*progressive, f);
+    angle += progressive->angle();
   }
+  const double co = std::cos(angle), si = std::sin(angle);
+  const auto set = [](T& x, T& y, T& z, const Eigen::Vector3d& v) {
+    x = static_cast<T>(v.x());
+    y = static_cast<T>(v.y());
+    z = static_cast<T>(v.z());
+  };
+  set(f.ax, f.ay, f.az, rotation.col(2));
+  set(f.gx, f.gy, f.gz, rotation * Eigen::Vector3d(co, si, 0));
+  set(f.ux, f.uy, f.uz, rotation * Eigen::Vector3d(si, -co, 0));
   return f;
 }
 
@@ -339,8 +404,11 @@ FaceParams<T> ParamsOf(const Lens& lens, LensFace face) {
 }
 
 bool HasSimdForm(const Surface& surface) {
-  return std::holds_alternative<SphereSurface>(surface.shape()) ||
-         std::holds_alternative<TorusSurface>(surface.shape());
+  const auto& shape = surface.shape();
+  return std::holds_alternative<SphereSurface>(shape) ||
+         std::holds_alternative<TorusSurface>(shape) ||
+         std::holds_alternative<ConicSurface>(shape) ||
+         std::holds_alternative<ProgressiveSurface>(shape);
 }
 
 template <typename T>

@@ -122,7 +122,7 @@ struct GeneralFace {
         sense(hn::Set(tag, sign)),
         a{hn::Set(tag, f.ax), hn::Set(tag, f.ay), hn::Set(tag, f.az)},
         g{hn::Set(tag, f.gx), hn::Set(tag, f.gy), hn::Set(tag, f.gz)},
-        torus(f.torus) {}
+        torus(f.kind == FaceKind::kTorus) {}
 
   HWY_INLINE V AxisDot(const Vec3<D>& v) const { return kUpright ? v.z : Dot<D>(a, v); }
   HWY_INLINE V GeneratorDot(const Vec3<D>& v) const {

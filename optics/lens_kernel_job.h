@@ -2,27 +2,41 @@
 // What the dispatched code of the lens kernel is called with: surfaces as plain numbers.
 #pragma once
 
+#include <array>
 #include <cstddef>
 
 #include "optics/lens_kernel.h"
 
 namespace lorgnette::kernel {
 
+enum class FaceKind { kSphere, kTorus, kConic, kProgressive };
+
+// Chebyshev coefficients of the sag along a progressive corridor.
+inline constexpr std::size_t kCorridorTerms = 24;
+
 // One surface of the lens. The axes are unit vectors of the lens frame, so that a ground prism
-// costs nothing: `a` along the surface's own +z, `g` along the generator meridian.
+// costs nothing: `a` along the surface's own +z, `g` along the generator or the umbilic, `u` across
+// both.
 template <typename T>
 struct FaceParams {
-  bool torus = false;
+  FaceKind kind = FaceKind::kSphere;
   bool tilted = false;  // a is not (0, 0, 1)
   T vertex_z = 0;       // mm
-  T c = 0;              // curvature: of the sphere, or of the torus across its generator, 1/mm
-  T generator = 0;      // torus: curvature of the generator
+  T c = 0;              // 1/mm: of the sphere, of the torus across its generator, of the conic's
+                        // vertex, of the progressive's far zone
+  T generator = 0;      // torus: curvature of the generator, 1/mm
   T delta = 0;          // torus: generator - c
   T ax = 0, ay = 0, az = 1;
-  T gx = 0, gy = 0, gz = 0;
+  T gx = 0, gy = 1, gz = 0;
+  T ux = 1, uy = 0, uz = 0;
+  T conic = 1;                               // conic: 1 + k
+  std::array<T, 4> even{};                   // conic: a4, a6, a8, a10
+  T add = 0, start = 0, length = 1;          // progressive: added curvature, 1/mm; mm
+  T end_sine = 0;                            // sine of the umbilic's slope where the corridor ends
+  T end_sag = 0;                             // sag where it ends, mm
+  std::array<T, kCorridorTerms> corridor{};  // sag inside it, in u = (start - y) / length
 };
 
-// Rays through `first` and, unless `face_only`, on through `second`.
 template <typename T>
 struct LensJob {
   FaceParams<T> first, second;

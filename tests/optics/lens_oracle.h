@@ -19,7 +19,24 @@ struct Height {
   Real value;
   Vec gradient;
 };
+inline std::optional<Height> HeightOverConic(const ConicSurface& s, const Vec& p) {
+  const Real c = s.curvature, q = 1 + Real(s.conic);
+  const Real r2 = p.x() * p.x() + p.y() * p.y();
+  const Real e2 = 1 - q * c * c * r2;
+  if (!(e2 > 0)) return std::nullopt;
+  const Real e = std::sqrt(e2);
+  Real z = c * r2 / (1 + e), slope = c / e, power = r2;  // slope: dz / dr over r
+  for (std::size_t i = 0; i < s.even.size(); ++i) {
+    z += s.even[i] * power * r2;
+    slope += Real(2 * i + 4) * s.even[i] * power;
+    power *= r2;
+  }
+  return Height{p.z() - z, Vec(-slope * p.x(), -slope * p.y(), 1)};
+}
 inline std::optional<Height> HeightOver(const Surface& surface, const Vec& p) {
+  if (const auto* conic = std::get_if<ConicSurface>(&surface.shape())) {
+    return HeightOverConic(*conic, p);
+  }
   Real cu = 0, cv = 0, angle = 0;
   if (const auto* s = std::get_if<SphereSurface>(&surface.shape())) {
     cu = cv = s->curvature;

@@ -1,0 +1,202 @@
+// SPDX-License-Identifier: Apache-2.0
+// Rays and a surface given as a graph z = sag(u, v) with its gradient: conics with even terms, and
+// the progressive surface. Newton from the vertex sphere; compiled for every instruction set.
+
+// Highway's own guard: this header is included again for every target.
+#if defined(LORGNETTE_OPTICS_LENS_KERNEL_GRAPH_INL_H_) == defined(HWY_TARGET_TOGGLE)
+#ifdef LORGNETTE_OPTICS_LENS_KERNEL_GRAPH_INL_H_
+#undef LORGNETTE_OPTICS_LENS_KERNEL_GRAPH_INL_H_
+#else
+#define LORGNETTE_OPTICS_LENS_KERNEL_GRAPH_INL_H_
+#endif
+
+#include <hwy/highway.h>
+
+#include "optics/lens_kernel_face-inl.h"
+#include "optics/lens_kernel_job.h"
+
+HWY_BEFORE_NAMESPACE();
+namespace lorgnette::kernel {
+namespace HWY_NAMESPACE {
+
+// Sag and gradient in the surface's own axes; `room` is positive on the sheet.
+template <class D>
+struct GraphJet {
+  hn::Vec<D> z, zu, zv, room;
+};
+
+// Square roots off the domain are taken of this, so that Newton can come back.
+inline constexpr double kLeastSquaredCosine = 1e-4;
+
+template <class D>
+HWY_INLINE hn::Vec<D> RootOf(D d, hn::Vec<D> squared) {
+  return hn::Sqrt(hn::Max(squared, hn::Set(d, hn::TFromD<D>(kLeastSquaredCosine))));
+}
+
+template <class D, class T = hn::TFromD<D>>
+HWY_INLINE GraphJet<D> ConicJet(D d, const FaceParams<T>& f, hn::Vec<D> u, hn::Vec<D> v) {
+  const auto one = hn::Set(d, 1), c = hn::Set(d, f.c);
+  const auto r2 = hn::MulAdd(u, u, hn::Mul(v, v));
+  GraphJet<D> jet;
+  jet.room = hn::NegMulAdd(hn::Set(d, f.conic * f.c * f.c), r2, one);
+  const auto e = RootOf(d, jet.room);
+  const auto even = [&](std::size_t i) { return hn::Set(d, f.even[i]); };
+  const auto even_slope = [&](std::size_t i) { return hn::Set(d, T(i + 2) * f.even[i]); };
+  const auto tail =
+      hn::MulAdd(r2, hn::MulAdd(r2, hn::MulAdd(r2, even(3), even(2)), even(1)), even(0));
+  const auto tail_slope =
+      hn::MulAdd(r2, hn::MulAdd(r2, hn::MulAdd(r2, even_slope(3), even_slope(2)), even_slope(1)),
+                 even_slope(0));
+  const auto inverse = hn::Div(one, hn::Mul(e, hn::Add(one, e)));
+  const auto conic = hn::Mul(hn::Mul(c, r2), hn::Mul(e, inverse));
+  jet.z = hn::MulAdd(hn::Mul(r2, r2), tail, conic);
+  // dz / d(r^2), twice: the gradient is this times (u, v).
+  const auto slope =
+      hn::MulAdd(hn::Mul(c, hn::Add(one, e)), inverse, hn::Mul(hn::Add(r2, r2), tail_slope));
+  jet.zu = hn::Mul(slope, u);
+  jet.zv = hn::Mul(slope, v);
+  return jet;
+}
+
+// The umbilic's slope sine phi(v), its curvature and that one's derivative; see ProgressiveSurface.
+template <class D, class T = hn::TFromD<D>>
+HWY_INLINE GraphJet<D> ProgressiveJet(D d, const FaceParams<T>& f, hn::Vec<D> u, hn::Vec<D> v) {
+  const auto zero = hn::Zero(d), one = hn::Set(d, 1), half = hn::Set(d, T(0.5));
+  const auto far = hn::Set(d, f.c), add = hn::Set(d, f.add);
+  const auto raw = hn::Mul(hn::Sub(hn::Set(d, f.start), v), hn::Set(d, 1 / f.length));
+  const auto s = hn::Min(hn::Max(raw, zero), one);
+  const auto s2 = hn::Mul(s, s);
+  const auto step = hn::Mul(
+      hn::Mul(s2, s),
+      hn::MulAdd(s, hn::MulAdd(s, hn::Set(d, T(6)), hn::Set(d, T(-15))), hn::Set(d, T(10))));
+  const auto rest = hn::Mul(s, hn::Sub(one, s));
+  const auto step1 = hn::Mul(hn::Set(d, T(30)), hn::Mul(rest, rest));
+  const auto integral =
+      hn::MulAdd(hn::Mul(s2, s2), hn::MulAdd(s, hn::Sub(s, hn::Set(d, T(3))), hn::Set(d, T(2.5))),
+                 hn::Max(hn::Sub(raw, one), zero));
+  const auto phi = hn::MulSub(far, v, hn::Mul(hn::Set(d, f.add * f.length), integral));
+  const auto curvature = hn::MulAdd(add, step, far);
+  const auto curvature1 = hn::Mul(hn::Set(d, -f.add / f.length), step1);
+
+  const auto w2 = hn::NegMulAdd(phi, phi, one);
+  const auto w = RootOf(d, w2);
+  const auto inverse_w = hn::Div(one, w);
+
+  // Sag along the umbilic: an arc from the vertex above the corridor, from its end below; a table
+  // within. On an arc of curvature k the rise is (v - v0) (phi + phi0) / (w + w0).
+  const auto below = hn::Ge(raw, one);
+  const auto phi0 = hn::IfThenElse(below, hn::Set(d, f.end_sine), zero);
+  const auto w0 =
+      hn::IfThenElse(below, hn::Sqrt(hn::Set(d, (1 - f.end_sine) * (1 + f.end_sine))), one);
+  const auto v0 = hn::IfThenElse(below, hn::Set(d, f.start - f.length), zero);
+  const auto rise = hn::Div(hn::Mul(hn::Sub(v, v0), hn::Add(phi, phi0)), hn::Add(w, w0));
+  auto g = hn::Add(rise, hn::IfThenElseZero(below, hn::Set(d, f.end_sag)));
+  const auto within = hn::And(hn::Gt(raw, zero), hn::Lt(raw, one));
+  if (!hn::AllFalse(d, within)) {
+    // Clenshaw's recurrence in x = 2 s - 1.
+    const auto x2 = hn::Mul(hn::Set(d, T(2)), hn::MulSub(hn::Set(d, T(2)), s, one));
+    auto b1 = zero, b2 = zero;
+    for (std::size_t i = kCorridorTerms - 1; i > 0; --i) {
+      const auto b = hn::Add(hn::MulSub(x2, b1, b2), hn::Set(d, f.corridor[i]));
+      b2 = b1;
+      b1 = b;
+    }
+    const auto table = hn::Add(hn::MulSub(hn::Mul(half, x2), b1, b2), hn::Set(d, f.corridor[0]));
+    g = hn::IfThenElse(within, table, g);
+  }
+
+  // Circular sections across: z = g + k u^2 / (1 + e), k = curvature / w.
+  const auto k = hn::Mul(curvature, inverse_w);
+  const auto k1 =
+      hn::Mul(inverse_w, hn::MulAdd(hn::Mul(curvature, curvature),
+                                    hn::Mul(phi, hn::Mul(inverse_w, inverse_w)), curvature1));
+  const auto ku = hn::Mul(k, u), u2 = hn::Mul(u, u);
+  const auto e2 = hn::NegMulAdd(ku, ku, one);
+  const auto e = RootOf(d, e2);
+  const auto inverse = hn::Div(one, hn::Mul(e, hn::Add(one, e)));
+  GraphJet<D> jet;
+  jet.room = hn::Min(w2, e2);
+  jet.z = hn::MulAdd(hn::Mul(k, u2), hn::Mul(e, inverse), g);
+  jet.zu = hn::Mul(ku, hn::Mul(hn::Add(one, e), inverse));
+  jet.zv = hn::MulAdd(k1, hn::Mul(u2, inverse), hn::Mul(phi, inverse_w));
+  return jet;
+}
+
+// Any surface with any axis.
+template <class D>
+struct AnyFace {
+  using T = hn::TFromD<D>;
+  using V = hn::Vec<D>;
+  using M = hn::Mask<D>;
+  D d;
+  const FaceParams<T>& f;
+  T sign;
+
+  HWY_INLINE AnyFace(D tag, const FaceParams<T>& params, T sense)
+      : d(tag), f(params), sign(sense) {}
+
+  HWY_INLINE FaceHit<D> Intersect(const Vec3<D>& p, const Vec3<D>& dir) const {
+    if (f.kind == FaceKind::kSphere || f.kind == FaceKind::kTorus) {
+      return GeneralFace<D, false>(d, f, sign).Intersect(p, dir);
+    }
+    return IntersectGraph(p, dir);
+  }
+
+ private:
+  HWY_INLINE GraphJet<D> JetAt(V u, V v) const {
+    return f.kind == FaceKind::kConic ? ConicJet(d, f, u, v) : ProgressiveJet(d, f, u, v);
+  }
+
+  HWY_INLINE FaceHit<D> IntersectGraph(const Vec3<D>& p, const Vec3<D>& dir) const {
+    constexpr int kMaxSteps = 20;
+    constexpr T kResidual_mm = sizeof(T) == 8 ? T(2e-13) : T(2e-5);
+    const V zero = hn::Zero(d), one = hn::Set(d, 1), c = hn::Set(d, f.c), sense = hn::Set(d, sign);
+    const Vec3<D> a{hn::Set(d, f.ax), hn::Set(d, f.ay), hn::Set(d, f.az)};
+    const Vec3<D> g{hn::Set(d, f.gx), hn::Set(d, f.gy), hn::Set(d, f.gz)};
+    const Vec3<D> across{hn::Set(d, f.ux), hn::Set(d, f.uy), hn::Set(d, f.uz)};
+    const Vec3<D> own{Dot<D>(across, p), Dot<D>(g, p), Dot<D>(a, p)};
+    const Vec3<D> way{Dot<D>(across, dir), Dot<D>(g, dir), Dot<D>(a, dir)};
+
+    // The vertex sphere, or the vertex plane where that is missed.
+    const V b = hn::NegMulAdd(c, Dot<D>(own, way), way.z);
+    const V h = hn::MulSub(c, Dot<D>(own, own), hn::Add(own.z, own.z));
+    V root;
+    M met;
+    V t = StableRoot(d, c, b, h, sense, &root, &met);
+    t = hn::IfThenElse(met, t, hn::Neg(hn::Div(own.z, way.z)));
+    t = hn::IfThenElse(hn::Lt(hn::Abs(t), hn::Set(d, T(kFarthest_mm))), t, zero);
+
+    GraphJet<D> jet;
+    M converged;
+    V slope;
+    for (int i = 0;; ++i) {
+      const Vec3<D> at = Along<D>(own, t, way);
+      jet = JetAt(at.x, at.y);
+      const V height = hn::Sub(at.z, jet.z);
+      slope = hn::NegMulAdd(jet.zu, way.x, hn::NegMulAdd(jet.zv, way.y, way.z));
+      converged = hn::Le(hn::Abs(height), hn::Set(d, kResidual_mm));
+      if (hn::AllTrue(d, converged) || i == kMaxSteps) break;
+      t = hn::Sub(t, hn::Div(height, slope));
+    }
+
+    FaceHit<D> hit;
+    hit.distance = t;
+    hit.point = Along<D>(p, t, dir);
+    const V length2 = hn::MulAdd(jet.zu, jet.zu, hn::MulAdd(jet.zv, jet.zv, one));
+    const V inverse = hn::Div(one, hn::Sqrt(length2));
+    const V nu = hn::Neg(jet.zu), nv = hn::Neg(jet.zv);
+    const Vec3<D> n = Along<D>(Along<D>(a, nu, across), nv, g);
+    hit.normal = {hn::Mul(n.x, inverse), hn::Mul(n.y, inverse), hn::Mul(n.z, inverse)};
+    hit.cosine = hn::Mul(slope, inverse);
+    const M near = hn::Lt(hn::Abs(t), hn::Set(d, T(kFarthest_mm)));
+    const M with_sense = hn::Gt(hn::Mul(hit.cosine, sense), zero);
+    hit.ok = hn::And(hn::And(converged, near), hn::And(with_sense, hn::Gt(jet.room, zero)));
+    return hit;
+  }
+};
+
+}  // namespace HWY_NAMESPACE
+}  // namespace lorgnette::kernel
+HWY_AFTER_NAMESPACE();
+
+#endif
