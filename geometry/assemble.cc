@@ -77,4 +77,24 @@ Result<Eyewear> MakeEyewear(const Fit& fit, const Prescription& prescription,
   return eyewear;
 }
 
+Result<FittedEyewear> FitEyewear(const FrameModel& frame, const TriangleMesh& face,
+                                 const Eigen::Vector3d& pupil_right,
+                                 const Eigen::Vector3d& pupil_left,
+                                 const Prescription& prescription, const FitOptions& fit_options,
+                                 const EyewearOptions& options) {
+  LG_ASSIGN(const Fit first, PlaceOnFace(frame, face, pupil_right, pupil_left, fit_options));
+  LG_ASSIGN(const Eyewear tried,
+            MakeEyewear(first, prescription, pupil_right, pupil_left, options));
+  // How much nearer to the eyes the lenses are than was assumed.
+  const double deeper =
+      (first.wearing.vertex_distance_right_mm + first.wearing.vertex_distance_left_mm -
+       tried.wearing.vertex_distance_right_mm - tried.wearing.vertex_distance_left_mm) /
+      2;
+  FitOptions again = fit_options;
+  again.lens_depth_mm += deeper;
+  LG_ASSIGN(Fit fit, PlaceOnFace(frame, face, pupil_right, pupil_left, again));
+  LG_ASSIGN(Eyewear eyewear, MakeEyewear(fit, prescription, pupil_right, pupil_left, options));
+  return FittedEyewear{std::move(fit), std::move(eyewear)};
+}
+
 }  // namespace lorgnette

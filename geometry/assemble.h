@@ -38,4 +38,17 @@ Result<Eyewear> MakeEyewear(const Fit& fit, const Prescription& prescription,
                             const Eigen::Vector3d& pupil_right, const Eigen::Vector3d& pupil_left,
                             const EyewearOptions& options = {});
 
+// Fits, makes the lenses, and fits once more with the depth that these lenses really have behind
+// their grooves, so that the vertex distance asked for is that of the mounted lenses.
+struct FittedEyewear {
+  Fit fit;
+  Eyewear eyewear;
+};
+Result<FittedEyewear> FitEyewear(const FrameModel& frame, const TriangleMesh& face,
+                                 const Eigen::Vector3d& pupil_right,
+                                 const Eigen::Vector3d& pupil_left,
+                                 const Prescription& prescription,
+                                 const FitOptions& fit_options = {},
+                                 const EyewearOptions& options = {});
+
 }  // namespace lorgnette

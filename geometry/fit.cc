@@ -18,9 +18,9 @@ namespace {
 
 constexpr double kLowest_mm = -14, kHighest_mm = 8, kHeightStep_mm = 0.25;
 constexpr double kTiltLeast_deg = 2, kTiltMost_deg = 16;
-constexpr double kTiltBend_deg = 6;       // temples are bent no further than this from their make
-constexpr double kNoseHalfWidth_mm = 30;  // front points nearer to the middle are the bridge's
+constexpr double kTiltBend_deg = 6;  // temples are bent no further than this from their make
 constexpr double kSideSearch_mm = 3;
+constexpr double kHeightWorth_mm = 1.0;  // of pupil height weighs as 1 mm of vertex distance
 constexpr double kWidthNote_mm = 4;
 constexpr double kSwingMost_deg = 8, kBowMost_mm = 8;
 constexpr std::size_t kCanonicalVertices = 468, kRightSide = 234, kLeftSide = 454;
@@ -58,16 +58,19 @@ std::optional<double> RestingDepth(const Obstacles& points, const FaceRelief& re
   return std::isfinite(z) ? std::optional(z) : std::nullopt;
 }
 
-// Deepest contact on one side, along the skin's normal, mm (negative: above the skin).
+// Deepest point of pads, bridge and rim on one side, along the skin's normal, mm (negative: how far
+// the nearest is above the skin).
 double ContactDepth(const Obstacles& points, const FaceRelief& relief,
                     const Eigen::Isometry3d& head_from_frame, int side) {
   double deepest = -std::numeric_limits<double>::infinity();
-  for (const Eigen::Vector3d& p : points.contacts) {
-    if (p.x() * side < 0) continue;
-    const Eigen::Vector3d at = head_from_frame * p;
-    const auto height = relief.Height(at.x(), at.y());
-    const auto normal = relief.Normal(at.x(), at.y());
-    if (height && normal) deepest = std::max(deepest, (*height - at.z()) * normal->z());
+  for (const auto* list : {&points.contacts, &points.front}) {
+    for (const Eigen::Vector3d& p : *list) {
+      if (p.x() * side < 0) continue;
+      const Eigen::Vector3d at = head_from_frame * p;
+      const auto height = relief.Height(at.x(), at.y());
+      const auto normal = relief.Normal(at.x(), at.y());
+      if (height && normal) deepest = std::max(deepest, (*height - at.z()) * normal->z());
+    }
   }
   return deepest;
 }
@@ -119,10 +122,32 @@ class Fitter {
 
   const Obstacles& points() const { return points_; }
 
-  // The best height on the nose for pads moved outward by `shift`.
+  // Slides a candidate sideways until both sides press alike.
+  void Centre(double shift, Candidate& c) const {
+    const Obstacles points = Moved(shift);
+    const Eigen::Matrix3d rotation = TiltRotation(c.tilt_deg);
+    double low = -kSideSearch_mm, high = kSideSearch_mm;
+    const auto difference = [&](double x) {
+      const auto right = RestingDepth(points, relief_, rotation, x, c.y, -1);
+      const auto left = RestingDepth(points, relief_, rotation, x, c.y, 1);
+      return right && left ? *left - *right : 0.0;
+    };
+    // Moved toward the left (+x) the left side comes off the nose.
+    if (difference(low) > 0 && difference(high) < 0) {
+      for (int step = 0; step < 14; ++step) {
+        const double middle = (low + high) / 2;
+        (difference(middle) > 0 ? low : high) = middle;
+      }
+      c.x = (low + high) / 2;
+      const auto z = RestingDepth(points, relief_, rotation, c.x, c.y, 0);
+      if (z) c.z = *z;
+    }
+    Price(c);
+  }
+
+  // The best height on the nose, in the middle of the face, for pads moved outward by `shift`.
   Candidate Best(double shift) {
-    Obstacles moved = points_;
-    for (Eigen::Vector3d& p : moved.contacts) p.x() += std::copysign(shift, p.x());
+    const Obstacles moved = Moved(shift);
     Candidate best;
     for (double y = kLowest_mm; y <= kHighest_mm; y += kHeightStep_mm) {
       const auto candidate = At(moved, y);
@@ -133,6 +158,12 @@ class Fitter {
   }
 
  private:
+  Obstacles Moved(double shift) const {
+    Obstacles moved = points_;
+    for (Eigen::Vector3d& p : moved.contacts) p.x() += std::copysign(shift, p.x());
+    return moved;
+  }
+
   std::optional<Candidate> At(const Obstacles& points, double y) const {
     Candidate c;
     c.y = y;
@@ -146,32 +177,18 @@ class Fitter {
       if (!z) return std::nullopt;
       c.z = *z;
     }
-    const Eigen::Matrix3d rotation = TiltRotation(c.tilt_deg);
-    // Sideways until both sides press alike.
-    double low = -kSideSearch_mm, high = kSideSearch_mm;
-    const auto difference = [&](double x) {
-      const auto right = RestingDepth(points, relief_, rotation, x, y, -1);
-      const auto left = RestingDepth(points, relief_, rotation, x, y, 1);
-      return right && left ? *left - *right : 0.0;
-    };
-    // Moved toward the left (+x) the left side comes off the nose.
-    if (difference(low) > 0 && difference(high) < 0) {
-      for (int step = 0; step < 14; ++step) {
-        const double middle = (low + high) / 2;
-        (difference(middle) > 0 ? low : high) = middle;
-      }
-      c.x = (low + high) / 2;
-      const auto z = RestingDepth(points, relief_, rotation, c.x, y, 0);
-      if (!z) return std::nullopt;
-      c.z = *z;
-    }
-    Measure(rotation, c);
-    const double height_off = (c.pupil_height_mm - target_height_) / 2.0;
+    Price(c);
+    return c;
+  }
+
+  void Price(Candidate& c) const {
+    c.vertex_mm = c.pupil_height_mm = 0;
+    Measure(TiltRotation(c.tilt_deg), c);
+    const double height_off = (c.pupil_height_mm - target_height_) / kHeightWorth_mm;
     const double vertex_off = c.vertex_mm < options_.min_vertex_mm
                                   ? options_.min_vertex_mm - c.vertex_mm
                                   : std::max(0.0, c.vertex_mm - options_.max_vertex_mm);
     c.cost = height_off * height_off + vertex_off * vertex_off;
-    return c;
   }
 
   void Measure(const Eigen::Matrix3d& rotation, Candidate& c) const {
@@ -250,6 +267,7 @@ Result<Fit> PlaceOnFace(const FrameModel& frame, const TriangleMesh& face,
         "fit: the face has no nose below the frame's bridge, want a face mesh in head "
         "space, mm");
   }
+  fitter.Centre(fit.pad_shift_mm, best);
   fit.frame = frame;
   if (fit.pad_shift_mm != 0) ShiftPads(fit.frame, fit.pad_shift_mm);
 

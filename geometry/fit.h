@@ -27,7 +27,7 @@ struct FitOptions {
   std::optional<double> pupil_height_mm;          // above the boxing centre; absent: by lens height
   std::optional<double> tilt_deg;                 // pantoscopic; absent: as the ears have it
   std::optional<EarPoints> ears;                  // absent: estimated
-  double pad_travel_mm = 2.5;                     // how far pads on arms may be bent sideways
+  double pad_travel_mm = 3;                       // how far pads on arms may be bent sideways
   Eigen::Vector3d nudge_mm{0, 0, 0};              // afterwards, head axes
   Eigen::Vector3d nudge_deg{0, 0, 0};             // about head x, y, z through the bridge
 };

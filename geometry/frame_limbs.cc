@@ -24,6 +24,19 @@ Eigen::Vector3d BezierDerivative(const Eigen::Vector3d (&p)[4], double t) {
   return 3 * (u * u * (p[1] - p[0]) + 2 * u * t * (p[2] - p[1]) + t * t * (p[3] - p[2]));
 }
 
+// A direction across the curve at equal steps of its parameter, carried along without twist.
+std::vector<Eigen::Vector3d> UntwistedSides(const Eigen::Vector3d (&path)[4]) {
+  constexpr int kSteps = 96;
+  std::vector<Eigen::Vector3d> sides;
+  Eigen::Vector3d side = BezierDerivative(path, 0).unitOrthogonal();
+  for (int k = 0; k <= kSteps; ++k) {
+    const Eigen::Vector3d t = BezierDerivative(path, double(k) / kSteps).normalized();
+    side = (side - side.dot(t) * t).normalized();
+    sides.push_back(side);
+  }
+  return sides;
+}
+
 // The middle line of a temple in its own upright plane: distance back and height below the hinge's
 // level line, by arc length, with the direction of travel.
 class TempleLine {
@@ -123,11 +136,16 @@ Pad PadMesh(const RimShape& rim, const RimParameters& rim_parameters, const PadP
     const Eigen::Vector3d start = rim.Point(s, 0.4 * rim.Width(s), -0.35 * rim_parameters.depth_mm);
     const Eigen::Vector3d end = centre - face * (0.2 * pad.thickness_mm);
     const double d = (end - start).norm();
-    const Eigen::Vector3d path[4] = {start, start + d * Eigen::Vector3d(0.1, 0.2, -0.6),
-                                     end + d * Eigen::Vector3d(0.6, 0.2, -0.2), end};
+    const Eigen::Vector3d path[4] = {start, start + d * Eigen::Vector3d(0.1, 0.1, -0.7),
+                                     end + d * Eigen::Vector3d(0.4, 0.3, -0.5), end};
+    const std::vector<Eigen::Vector3d> sides = UntwistedSides(path);
     const VolumeMap arm = [&](double v, double q, double w) -> Eigen::Vector3d {
       const Eigen::Vector3d t = BezierDerivative(path, v).normalized();
-      const Eigen::Vector3d n1 = t.cross(Eigen::Vector3d::UnitY()).normalized();
+      const double k = std::clamp(v, 0.0, 1.0) * double(sides.size() - 1);
+      const std::size_t i = std::min(std::size_t(k), sides.size() - 2);
+      const Eigen::Vector3d side =
+          Eigen::Vector3d(sides[i] + (k - double(i)) * (sides[i + 1] - sides[i]));
+      const Eigen::Vector3d n1 = (side - side.dot(t) * t).normalized();
       return Bezier(path, v) + pad.arm_mm * (q * n1 + w * t.cross(n1));
     };
     BarShape wire;
