@@ -286,7 +286,7 @@ double Compositor::MatchExposure(const ImageRgbF& input, const Camera& camera,
   constexpr double kSkinAlbedo = 0.4;
   const HeadScene& head = scene_->head;
   const PictureView picture(input, camera, camera_from_head, head.scene, head.face_vertices,
-                            head.face_triangles, 1e4);
+                            head.face_normals, head.face_triangles, 1e4);
   const Eigen::Matrix3f world_from_head =
       (head.options.world_from_camera * camera_from_head.rotation()).cast<float>();
   const HeadLight light = LightAt(head.directions, head.cells, world_from_head, 1);

@@ -11,6 +11,8 @@ namespace lorgnette {
 namespace {
 
 constexpr float kVisibilityLift_mm = 0.6f;
+// Skin seen more obliquely shares its pixels with what lies behind the silhouette.
+constexpr float kGrazing = 0.2f;
 
 // Runs `make` once. A thread that waits for the parallel loops in it takes up no other tile's work,
 // which could ask for the same thing again.
@@ -24,6 +26,7 @@ void Once(std::once_flag& flag, Make&& make) {
 PictureView::PictureView(const ImageRgbF& input, const Camera& camera,
                          const Eigen::Isometry3d& camera_from_head, const EmbreeScene& scene,
                          const std::vector<Eigen::Vector3f>& face_vertices,
+                         const std::vector<Eigen::Vector3f>& face_normals,
                          const std::vector<Eigen::Vector3i>& face_triangles,
                          double background_depth_mm)
     : input_(input),
@@ -33,6 +36,7 @@ PictureView::PictureView(const ImageRgbF& input, const Camera& camera,
       eye_(camera_from_head.inverse().translation().cast<float>()),
       scene_(scene),
       vertices_(face_vertices),
+      normals_(face_normals),
       triangles_(face_triangles),
       background_depth_(float(background_depth_mm)) {}
 
@@ -49,6 +53,14 @@ bool PictureView::CameraSees(const Eigen::Vector3f& point) const {
   return !scene_.Occluded(RaySet::kHead, point, to_eye / distance, kVisibilityLift_mm, distance);
 }
 
+bool PictureView::Faces(const Eigen::Vector3i& t, const SceneHit& hit,
+                        const Eigen::Vector3f& point) const {
+  const Eigen::Vector3f normal = (1 - hit.u - hit.v) * normals_[std::size_t(t[0])] +
+                                 hit.u * normals_[std::size_t(t[1])] +
+                                 hit.v * normals_[std::size_t(t[2])];
+  return normal.normalized().dot((eye_ - point).normalized()) >= kGrazing;
+}
+
 Eigen::Vector3f PictureView::Head(const SceneHit& hit, const Eigen::Vector3f& point,
                                   long& filled) const {
   const Eigen::Vector2f p = Project(point);
@@ -57,7 +69,7 @@ Eigen::Vector3f PictureView::Head(const SceneHit& hit, const Eigen::Vector3f& po
     const Eigen::Vector3i& t = triangles_[hit.triangle];
     const bool vertices_seen = vertex_seen_[std::size_t(t[0])] && vertex_seen_[std::size_t(t[1])] &&
                                vertex_seen_[std::size_t(t[2])];
-    if (!InsidePicture(p) || (!vertices_seen && !CameraSees(point))) {
+    if (!InsidePicture(p) || (!vertices_seen && (!Faces(t, hit, point) || !CameraSees(point)))) {
       ++filled;
       return (1 - hit.u - hit.v) * vertex_colours_[std::size_t(t[0])] +
              hit.u * vertex_colours_[std::size_t(t[1])] +
@@ -101,7 +113,8 @@ void PictureView::FillFace() const {
   vertex_seen_.assign(n, 0);
   tbb::parallel_for(std::size_t(0), n, [&](std::size_t i) {
     const Eigen::Vector2f p = Project(vertices_[i]);
-    if (!InsidePicture(p) || !CameraSees(vertices_[i])) return;
+    const Eigen::Vector3f sight = (eye_ - vertices_[i]).normalized();
+    if (!InsidePicture(p) || normals_[i].dot(sight) < kGrazing || !CameraSees(vertices_[i])) return;
     vertex_seen_[i] = 1;
     vertex_colours_[i] = SampleBilinear(input_, p.x(), p.y());
   });

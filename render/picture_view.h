@@ -40,6 +40,7 @@ class PictureView {
   PictureView(const ImageRgbF& input, const Camera& camera,
               const Eigen::Isometry3d& camera_from_head, const EmbreeScene& scene,
               const std::vector<Eigen::Vector3f>& face_vertices,
+              const std::vector<Eigen::Vector3f>& face_normals,
               const std::vector<Eigen::Vector3i>& face_triangles, double background_depth_mm);
 
   const Eigen::Vector3f& eye() const { return eye_; }
@@ -58,6 +59,8 @@ class PictureView {
     return p.x() >= 0 && p.y() >= 0 && p.x() <= float(input_.width) &&
            p.y() <= float(input_.height);
   }
+  bool Faces(const Eigen::Vector3i& triangle, const SceneHit& hit,
+             const Eigen::Vector3f& point) const;
   bool CameraSees(const Eigen::Vector3f& point) const;
   void FillFace() const;
   void FillBackground() const;
@@ -68,6 +71,7 @@ class PictureView {
   Eigen::Vector3f translation_, eye_;
   const EmbreeScene& scene_;
   const std::vector<Eigen::Vector3f>& vertices_;
+  const std::vector<Eigen::Vector3f>& normals_;
   const std::vector<Eigen::Vector3i>& triangles_;
   float background_depth_;
 

@@ -58,8 +58,8 @@ RayFollower::RayFollower(const HeadScene& head, const ImageRgbF& input, const Ca
     : head_(head),
       world_from_head_(
           (head.options.world_from_camera * camera_from_head.rotation()).cast<float>()),
-      picture_(input, camera, camera_from_head, head.scene, head.face_vertices, head.face_triangles,
-               BackgroundDepth(head.options, camera_from_head)) {
+      picture_(input, camera, camera_from_head, head.scene, head.face_vertices, head.face_normals,
+               head.face_triangles, BackgroundDepth(head.options, camera_from_head)) {
   const HeadLight light =
       LightAt(head.directions, head.cells, world_from_head_, float(head.options.environment_scale));
   if (head.baked_shadow) ratios_ = head.baked_shadow->Relight(light);
