@@ -41,7 +41,7 @@ HWY_INLINE Refraction<D> RefractAt(D d, const FaceHit<D>& hit, const Vec3<D>& di
   const auto after2 = hn::MulAdd(eta_cosine, eta_cosine, difference);
   Refraction<D> r;
   r.ok = hn::Ge(after2, hn::Zero(d));
-  r.along = hn::Mul(sense, hn::Sqrt(hn::Max(after2, hn::Zero(d))));
+  r.along = hn::Mul(sense, QuickSqrt(d, hn::Max(after2, hn::Zero(d))));
   const auto k = hn::Sub(r.along, eta_cosine);
   r.direction = {hn::MulAdd(eta, dir.x, hn::Mul(k, hit.normal.x)),
                  hn::MulAdd(eta, dir.y, hn::Mul(k, hit.normal.y)),

@@ -53,6 +53,21 @@ struct FaceHit {
 // No crossing of a lens lies farther than this from the point of a ray nearest the vertex, mm.
 inline constexpr double kFarthest_mm = 1e5;
 
+// Square root of x >= 0 to about a unit in the last place. In float from the machine's reciprocal
+// root and one Newton step, which takes half the time of the exact instruction.
+template <class D>
+HWY_INLINE hn::Vec<D> QuickSqrt(D d, hn::Vec<D> x) {
+  using T = hn::TFromD<D>;
+  if constexpr (sizeof(T) == 8) {
+    return hn::Sqrt(x);
+  } else {
+    const auto y =
+        hn::ApproximateReciprocalSqrt(hn::Max(x, hn::Set(d, std::numeric_limits<T>::min())));
+    const auto s = hn::Mul(x, y);
+    return hn::MulAdd(hn::Mul(hn::Set(d, T(0.5)), y), hn::NegMulAdd(s, s, x), s);
+  }
+}
+
 // The root of c t^2 - 2 b t + h = 0 for which b - c t has the sign of `sense` (+-1); `*root`
 // receives that b - c t. `*ok` is false where there is none.
 template <class D>
@@ -67,7 +82,7 @@ HWY_INLINE hn::Vec<D> StableRoot(D d, hn::Vec<D> c, hn::Vec<D> b, hn::Vec<D> h, 
   const auto rounding =
       hn::Mul(hn::Set(d, T(-2) * std::numeric_limits<T>::epsilon()), hn::Add(bb, hn::Abs(ch)));
   *ok = hn::Ge(disc, rounding);
-  *root = hn::Mul(sense, hn::Sqrt(hn::Max(disc, zero)));
+  *root = hn::Mul(sense, QuickSqrt(d, hn::Max(disc, zero)));
   auto t = hn::Div(h, hn::Add(b, *root));
   // Seen from the start the surface curls away: the wanted root is the other one. Rare.
   const auto other = hn::Lt(hn::Mul(b, sense), zero);
