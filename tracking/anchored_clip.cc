@@ -17,6 +17,8 @@ constexpr double kViewReach = RadiansFromDegrees(12);  // weight of a view falls
 constexpr std::size_t kMostViews = 12;
 constexpr std::size_t kViewsPerFrame = 2;
 constexpr std::size_t kKeyFrames = 24;
+constexpr double kSightingSigma = 0.15;  // crop px
+constexpr double kGoodWeight = 10;       // of the inliers of a pose that can be relied on
 
 struct Sighting {
   std::size_t view, anchor;
@@ -39,12 +41,19 @@ class Anchorer {
   void MatchFrames();
   double Bundle(double focal_log_sigma);
   void FitPoses(AnchoredClip& clip) const;
+  // Frames that look like none of the views (a grimace, a blur) are tied to their neighbours in
+  // time, from both sides.
+  void RepairPoses(AnchoredClip& clip) const;
 
   const Camera& camera() const { return camera_; }
   std::vector<AnchorView>& views() { return views_; }
 
  private:
   const Eigen::Isometry3d& Landmark(std::size_t f) const { return in_.landmark_poses[f]; }
+  // A pixel of the frame's crop, in pixels of the frame.
+  double CropPixel(std::size_t f) const {
+    return in_.frames[f].crop.region.side / in_.frames[f].crop.grey.width;
+  }
   bool Seen(std::size_t f) const { return in_.frames[f].landmarks.has_value(); }
   // The views nearest to a frame, nearest first; `from` none.
   std::vector<std::size_t> NearestViews(std::size_t f) const;
@@ -54,6 +63,9 @@ class Anchorer {
   PoseFit Fit(const std::vector<Sighting>& sightings, const Eigen::Isometry3d& guess,
               double scale_px) const;
   void KeepSize();
+  AnchorView ViewOf(std::size_t f, const Eigen::Isometry3d& pose) const;
+  std::vector<std::optional<PoseFit>> Chain(const std::vector<std::optional<PoseFit>>& poses,
+                                            std::size_t first, std::size_t last, int step) const;
   void AddView(std::size_t f, const Eigen::Isometry3d& pose);
 
   const AnchoringInput& in_;
@@ -110,9 +122,13 @@ PoseFit Anchorer::Fit(const std::vector<Sighting>& sightings, const Eigen::Isome
 }
 
 void Anchorer::AddView(std::size_t f, const Eigen::Isometry3d& pose) {
-  const FollowedFrame& frame = in_.frames[f];
-  views_.push_back(MakeAnchorView(f, frame.crop, TexturePyramid(frame.crop.grey), camera_, pose,
-                                  in_.face, in_.rigid_weight));
+  views_.push_back(ViewOf(f, pose));
+}
+
+AnchorView Anchorer::ViewOf(std::size_t f, const Eigen::Isometry3d& pose) const {
+  const FaceCrop& crop = in_.frames[f].crop;
+  return MakeAnchorView(f, crop, TexturePyramid(crop.grey), camera_, pose, in_.face,
+                        in_.rigid_weight);
 }
 
 void Anchorer::ChooseViews() {
@@ -156,7 +172,8 @@ void Anchorer::ChooseViews() {
     Eigen::Isometry3d pose;
     const std::vector<Sighting> tied = Match(best, &pose);
     if (tied.empty()) continue;
-    AddView(best, Fit(tied, pose, in_.frames[best].crop.region.side / 256).camera_from_head);
+    const PoseFit fit = Fit(tied, pose, CropPixel(best));
+    if (fit.inlier_weight >= kGoodWeight) AddView(best, fit.camera_from_head);
   }
 }
 
@@ -175,7 +192,10 @@ double Anchorer::Bundle(double focal_log_sigma) {
   std::vector<std::size_t> usable;
   for (std::size_t f = 0; f < sightings_.size(); ++f) {
     const bool is_view = std::find(keys.begin(), keys.end(), f) != keys.end();
-    if (!sightings_[f].empty() && !is_view) usable.push_back(f);
+    if (sightings_[f].empty() || is_view) continue;
+    if (Fit(sightings_[f], guesses_[f], CropPixel(f)).inlier_weight >= kGoodWeight) {
+      usable.push_back(f);
+    }
   }
   const std::size_t stride = std::max<std::size_t>(1, usable.size() / kKeyFrames);
   for (std::size_t k = stride / 2; k < usable.size(); k += stride) keys.push_back(usable[k]);
@@ -192,7 +212,7 @@ double Anchorer::Bundle(double focal_log_sigma) {
     const std::size_t f = keys[k];
     const bool is_view = k < views_.size();
     poses.push_back(is_view ? views_[k].camera_from_head
-                            : Fit(sightings_[f], guesses_[f], 2).camera_from_head);
+                            : Fit(sightings_[f], guesses_[f], CropPixel(f)).camera_from_head);
     if (is_view) {
       for (std::size_t a = 0; a < views_[k].anchors.size(); ++a) {
         const Eigen::Vector3d p = poses[k] * views_[k].anchors[a].head;
@@ -206,7 +226,7 @@ double Anchorer::Bundle(double focal_log_sigma) {
   }
   BundleOptions options;
   options.focal_log_sigma = focal_log_sigma;
-  options.sigma_px = 0.15 * in_.frames[views_[0].frame].crop.region.side / 256;
+  options.sigma_px = kSightingSigma * CropPixel(views_[0].frame);
   const BundleReport report = FitBundle(sightings, options, camera_, poses, points);
   if (!report.usable) return 0;
   for (std::size_t v = 0; v < views_.size(); ++v) {
@@ -243,8 +263,71 @@ void Anchorer::FitPoses(AnchoredClip& clip) const {
   clip.poses.assign(in_.frames.size(), std::nullopt);
   for (std::size_t f = 0; f < in_.frames.size(); ++f) {
     if (sightings_[f].empty()) continue;
-    const double px = in_.frames[f].crop.region.side / 256;
-    clip.poses[f] = Fit(sightings_[f], guesses_[f], px);
+    clip.poses[f] = Fit(sightings_[f], guesses_[f], CropPixel(f));
+  }
+}
+
+// Follows frames first, first + step, ... up to last (left out) from the good frame before `first`.
+std::vector<std::optional<PoseFit>> Anchorer::Chain(
+    const std::vector<std::optional<PoseFit>>& poses, std::size_t first, std::size_t last,
+    int step) const {
+  std::vector<std::optional<PoseFit>> chained(in_.frames.size());
+  std::size_t before = first - std::size_t(step);
+  Eigen::Isometry3d pose = poses[before]->camera_from_head;
+  AnchorView view = ViewOf(before, pose);
+  for (std::size_t f = first; f != last; f += std::size_t(step)) {
+    const FaceCrop& crop = in_.frames[f].crop;
+    const TexturePyramid texture(crop.grey);
+    for (const bool renewed : {false, true}) {
+      if (renewed) {
+        if (view.frame == before) break;
+        view = ViewOf(before, pose);
+      }
+      const Eigen::Isometry3d guess = Moved(pose, MotionBetween(Landmark(before), Landmark(f)));
+      const auto match = MatchAnchors(view, crop, texture, camera_, guess, PoseGuess::kRough);
+      if (!match || match->pose.inlier_weight < kGoodWeight) continue;
+      chained[f] = match->pose;
+      break;
+    }
+    if (!chained[f]) break;
+    pose = chained[f]->camera_from_head;
+    before = f;
+  }
+  return chained;
+}
+
+void Anchorer::RepairPoses(AnchoredClip& clip) const {
+  const std::vector<std::optional<PoseFit>> poses = clip.poses;
+  const auto good = [&](std::size_t f) {
+    return poses[f].has_value() && poses[f]->inlier_weight >= kGoodWeight;
+  };
+  const auto joined = [&](std::size_t f) {  // with the frame before
+    return f > 0 && Seen(f) && Seen(f - 1) && !in_.frames[f].cut_before;
+  };
+  const std::size_t count = in_.frames.size();
+  for (std::size_t a = 0; a < count;) {
+    if (!Seen(a) || good(a)) {
+      ++a;
+      continue;
+    }
+    std::size_t b = a + 1;
+    while (b < count && joined(b) && !good(b)) ++b;
+    std::vector<std::optional<PoseFit>> forward(count), backward(count);
+    if (joined(a) && good(a - 1)) forward = Chain(poses, a, b, 1);
+    if (b < count && joined(b) && good(b)) backward = Chain(poses, b - 1, a - 1, -1);
+    for (std::size_t f = a; f < b; ++f) {
+      if (forward[f] && backward[f]) {
+        // Each side drifts away from its own good frame.
+        const double share = double(f + 1 - a) / double(b + 1 - a);
+        const Vector6d apart =
+            MotionBetween(forward[f]->camera_from_head, backward[f]->camera_from_head);
+        clip.poses[f] = forward[f];
+        clip.poses[f]->camera_from_head = Moved(forward[f]->camera_from_head, share * apart);
+      } else if (forward[f] || backward[f]) {
+        clip.poses[f] = forward[f] ? forward[f] : backward[f];
+      }
+    }
+    a = b;
   }
 }
 
@@ -257,6 +340,7 @@ AnchoredClip AnchorClip(const AnchoringInput& input, double focal_log_sigma, Cam
   AnchoredClip clip;
   clip.rms_px = anchorer.Bundle(focal_log_sigma);
   anchorer.FitPoses(clip);
+  anchorer.RepairPoses(clip);
   camera = anchorer.camera();
   clip.views = std::move(anchorer.views());
   return clip;

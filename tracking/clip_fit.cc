@@ -30,6 +30,8 @@ constexpr double kMeshYawSigma = RadiansFromDegrees(0.7), kMeshYawSigmaByAngle =
 // Standard errors of the distance between the pupils, from the lids' corners and, beside their
 // scatter, from the irises (edges of lids and lashes; eyes that converge).
 constexpr double kLidsDistanceSigmaMm = 1.5, kIrisDistanceSigmaMm = 0.5;
+constexpr double kFullConfidence = 15;  // weight of inliers
+constexpr double kLeastConfidence = 0.03;
 constexpr double kFieldDoubt = 1;  // weight of no change, in anchors
 
 // Yaw of the face against the line from the camera to it: what the network sees.
@@ -148,13 +150,14 @@ double YawOffset(const std::vector<double>& texture, const std::vector<double>& 
   return mean_n / gain - mean_t;
 }
 
-HeadTrack FitClip(const std::vector<FollowedFrame>& frames, const CanonicalMesh& canonical,
-                  int width, int height, double pd_mm, double focal_px) {
+ClipFit FitClip(const std::vector<FollowedFrame>& frames, const CanonicalMesh& canonical, int width,
+                int height, double pd_mm, double focal_px) {
   std::vector<const FaceLandmarks*> landmarks;
   for (const FollowedFrame& frame : frames) {
     landmarks.push_back(frame.landmarks ? &*frame.landmarks : nullptr);
   }
-  HeadTrack track;
+  ClipFit fit;
+  HeadTrack& track = fit.track;
   track.pd_mm = pd_mm;
   const bool calibrated = focal_px > 0;
   if (!calibrated) focal_px = TypicalFocal(width, height, pd_mm, landmarks);
@@ -181,9 +184,9 @@ HeadTrack FitClip(const std::vector<FollowedFrame>& frames, const CanonicalMesh&
   std::vector<double> texture_yaw, network_yaw;
   for (std::size_t f = 0; f < frames.size(); ++f) {
     if (landmarks[f] == nullptr) continue;
-    const PoseFit fit =
+    const PoseFit read =
         FitLandmarkPose(track.camera, generic, canonical.rigid_weight, *landmarks[f]);
-    network_yaw.push_back(ApparentYaw(fit.camera_from_head));
+    network_yaw.push_back(ApparentYaw(read.camera_from_head));
     texture_yaw.push_back(ApparentYaw(poses[f]));
   }
   Similarity turn;
@@ -220,7 +223,11 @@ HeadTrack FitClip(const std::vector<FollowedFrame>& frames, const CanonicalMesh&
     if (irises[f].right) out.iris_right = irises[f].right->pixel.cast<float>();
     if (irises[f].left) out.iris_left = irises[f].left->pixel.cast<float>();
   }
-  return track;
+  for (const std::optional<PoseFit>& pose : anchored.poses) {
+    const double weight = pose ? pose->inlier_weight / kFullConfidence : 0;
+    fit.confidence.push_back(std::clamp(weight, kLeastConfidence, 1.0));
+  }
+  return fit;
 }
 
 }  // namespace lorgnette

@@ -20,9 +20,14 @@ inline constexpr double kNetworkYawGain = 1.15, kNetworkYawGainSigma = 0.1;
 // Tested: recovers the constant from readings of a gain of its own.
 double YawOffset(const std::vector<double>& texture, const std::vector<double>& network);
 
+struct ClipFit {
+  HeadTrack track;
+  std::vector<double> confidence;  // of each frame's pose, 0..1
+};
+
 // Needs at least one frame with landmarks. Poses are not smoothed, expressions not filled in.
 //   focal_px  0: fitted to the clip about a typical value
-HeadTrack FitClip(const std::vector<FollowedFrame>& frames, const CanonicalMesh& canonical,
-                  int width, int height, double pd_mm, double focal_px);
+ClipFit FitClip(const std::vector<FollowedFrame>& frames, const CanonicalMesh& canonical, int width,
+                int height, double pd_mm, double focal_px);
 
 }  // namespace lorgnette

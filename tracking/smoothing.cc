@@ -11,7 +11,8 @@
 namespace lorgnette {
 namespace {
 
-constexpr int kBand = 3;  // of the third difference
+constexpr int kBand = 3;             // of the third difference
+constexpr double kMostWeight = 1e5;  // of a sample that stands out
 constexpr std::array<double, 4> kDifference{-1, 3, -3, 1};
 
 // Lower band of a symmetric matrix: row i holds columns i - 3 .. i.
@@ -77,6 +78,44 @@ Eigen::MatrixXd Smoothed(const Eigen::MatrixXd& samples, const Eigen::VectorXd& 
   if (!Factor(band)) return samples;
   Eigen::MatrixXd smooth = weights.asDiagonal() * samples;
   Solve(band, smooth);
+  return smooth;
+}
+
+namespace {
+
+// Standard deviation of white noise on a smooth curve: its third differences vary by 1 + 9 + 9 + 1
+// times as much, and 1.4826 times the median deviation is a normal standard deviation.
+double NoiseOf(const Eigen::VectorXd& samples) {
+  std::vector<double> differences;
+  for (Eigen::Index i = 0; i + kBand < samples.size(); ++i) {
+    double sum = 0;
+    for (int k = 0; k <= kBand; ++k) sum += kDifference[std::size_t(k)] * samples[i + k];
+    differences.push_back(std::abs(sum));
+  }
+  const auto middle = differences.begin() + long(differences.size() / 2);
+  std::nth_element(differences.begin(), middle, differences.end());
+  return 1.4826 * *middle / std::sqrt(20.0);
+}
+
+}  // namespace
+
+Eigen::VectorXd SmoothedKeepingJumps(const Eigen::VectorXd& samples, const Eigen::VectorXd& trust,
+                                     double stiffness, double outstanding) {
+  LG_CHECK_EQ(samples.size(), trust.size());
+  constexpr int kRounds = 6;
+  if (samples.size() <= kBand) return samples;
+  const double limit = outstanding * NoiseOf(samples);
+  Eigen::VectorXd weights = trust;
+  Eigen::VectorXd smooth = Smoothed(samples, weights, stiffness);
+  if (!(limit > 0)) return smooth;
+  for (int round = 0; round < kRounds; ++round) {
+    for (Eigen::Index i = 0; i < samples.size(); ++i) {
+      const double excess = std::abs(samples[i] - smooth[i]) / limit;
+      if (excess > 1 && trust[i] >= 0.5)
+        weights[i] = std::min(kMostWeight, weights[i] * (1 + excess * excess));
+    }
+    smooth = Smoothed(samples, weights, stiffness);
+  }
   return smooth;
 }
 

@@ -2,16 +2,19 @@
 #include "tracking/track_smoothing.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 
 #include "base/check.h"
-#include "tracking/pose_fit.h"
 #include "tracking/smoothing.h"
 
 namespace lorgnette {
 namespace {
 
-constexpr double kPoseCutoffHz = 4;
+// Of the origin's direction (two), its distance (logarithm), and the turn about the camera's axes:
+// what a frame tells well is smoothed little.
+constexpr std::array<double, 6> kCutoffHz{10, 10, 4, 6, 6, 6};
+constexpr double kOutstanding = 3;  // deviations of the noise, from which on motion is motion
 constexpr double kExpressionCutoffHz = 6;
 
 struct Run {
@@ -40,23 +43,36 @@ double RateOf(const HeadTrack& track, const Run& run) {
 
 }  // namespace
 
-void SmoothTrack(const std::vector<bool>& cut_before, HeadTrack& track) {
+void SmoothTrack(const std::vector<bool>& cut_before, const std::vector<double>& confidence,
+                 HeadTrack& track) {
+  LG_CHECK_EQ(confidence.size(), track.frames.size());
   LG_CHECK_EQ(cut_before.size(), track.frames.size());
   for (const Run& run : RunsOf(track, cut_before)) {
-    // Motions from the pose in the middle of the run: small enough for their components to be
-    // smoothed one by one.
-    const Eigen::Isometry3d base = track.frames[(run.first + run.last) / 2].camera_from_head;
+    const double rate = RateOf(track, run);
+    const Eigen::Matrix3d base = track.frames[(run.first + run.last) / 2].camera_from_head.linear();
     const Eigen::Index count = Eigen::Index(run.last - run.first);
-    Eigen::MatrixXd motions(count, 6);
+    const Eigen::Map<const Eigen::VectorXd> trust(confidence.data() + run.first, count);
+    Eigen::MatrixXd channels(count, 6);
     for (Eigen::Index i = 0; i < count; ++i) {
-      const TrackedFrame& frame = track.frames[run.first + std::size_t(i)];
-      motions.row(i) = MotionBetween(base, frame.camera_from_head).transpose();
+      const Eigen::Isometry3d& pose = track.frames[run.first + std::size_t(i)].camera_from_head;
+      const Eigen::Vector3d& at = pose.translation();
+      const Eigen::AngleAxisd turn(Eigen::Matrix3d(pose.linear() * base.transpose()));
+      channels.row(i) << at.x() / at.z(), at.y() / at.z(), std::log(at.z()),
+          turn.angle() * turn.axis().transpose();
     }
-    const double stiffness = StiffnessForCutoff(kPoseCutoffHz, RateOf(track, run));
-    const Eigen::MatrixXd smooth = Smoothed(motions, Eigen::VectorXd::Ones(count), stiffness);
+    for (int c = 0; c < 6; ++c) {
+      const double stiffness = StiffnessForCutoff(kCutoffHz[std::size_t(c)], rate);
+      channels.col(c) = SmoothedKeepingJumps(channels.col(c), trust, stiffness, kOutstanding);
+    }
     for (Eigen::Index i = 0; i < count; ++i) {
-      track.frames[run.first + std::size_t(i)].camera_from_head =
-          Moved(base, smooth.row(i).transpose());
+      Eigen::Isometry3d& pose = track.frames[run.first + std::size_t(i)].camera_from_head;
+      const double depth = std::exp(channels(i, 2));
+      pose.translation() = depth * Eigen::Vector3d(channels(i, 0), channels(i, 1), 1);
+      const Eigen::Vector3d turn = channels.row(i).tail<3>().transpose();
+      pose.linear() =
+          turn.norm() > 0
+              ? Eigen::AngleAxisd(turn.norm(), turn.normalized()).toRotationMatrix() * base
+              : base;
     }
   }
 }

@@ -13,7 +13,9 @@ namespace lorgnette {
 // Smooths camera_from_head over runs of frames with a face, never across a gap or a cut; forward
 // and backward agree and nothing lags (tracking/smoothing.h).
 //   cut_before  one a frame: the film was cut between it and the frame before
-void SmoothTrack(const std::vector<bool>& cut_before, HeadTrack& track);
+//   confidence  one a frame, 0..1: how far its pose can be relied on
+void SmoothTrack(const std::vector<bool>& cut_before, const std::vector<double>& confidence,
+                 HeadTrack& track);
 
 // Fills `vertices` and `residual_px` of every frame with a face: each vertex moves, at the depth of
 // the rigid face, to where the landmark is seen; the moves are smoothed in time.

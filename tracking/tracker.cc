@@ -67,13 +67,13 @@ Result<HeadTrack> Tracker::Finish() {
     return Failure(fmt::format("video: no face found in any of {} frames, want at least one",
                                s.frames.size()));
   }
-  HeadTrack track =
+  ClipFit fit =
       FitClip(s.frames, s.canonical, s.width, s.height, s.options.pd_mm, s.options.focal_px);
   std::vector<bool> cut_before;
   for (const FollowedFrame& frame : s.frames) cut_before.push_back(frame.cut_before);
-  SmoothTrack(cut_before, track);
-  FollowExpression(landmarks, cut_before, track);
-  return track;
+  SmoothTrack(cut_before, fit.confidence, fit.track);
+  FollowExpression(landmarks, cut_before, fit.track);
+  return std::move(fit.track);
 }
 
 }  // namespace lorgnette
