@@ -59,6 +59,51 @@ Eigen::Matrix2d BackCurvature(const Eigen::Matrix2d& front_D, const Eigen::Matri
   return 0.5 * (own + own.transpose());
 }
 
+Eigen::Matrix2d PaperBackCurvature(const Eigen::Matrix2d& front_D, const Eigen::Matrix2d& power_D,
+                                   double thickness_mm, double index) {
+  const double tau = thickness_mm / 1000 / index;
+  const Eigen::Matrix2d k = (power_D - front_D - tau * front_D * front_D) / (1000 * (1 - index));
+  return 0.5 * (k + k.transpose());
+}
+
+Eigen::Matrix2d PrismaticObserverMagnification(const Lens& lens, double index, double camera_mm,
+                                               double depth_mm) {
+  const Eigen::Matrix2d identity = Eigen::Matrix2d::Identity();
+  const Eigen::Matrix3d axes = BackRotation(lens);
+  const Eigen::Vector3d normal = axes.col(2);
+  const double lean = normal.head<2>().norm();
+  const Eigen::Vector2d toward =
+      lean > 0 ? Eigen::Vector2d(-normal.head<2>() / lean) : Eigen::Vector2d(1, 0);
+  const double incidence = std::atan2(lean, normal.z());
+  const double leaving = std::asin(index * std::sin(incidence)), deviation = leaving - incidence;
+
+  // Lengths in mm and curvatures in 1/mm here; slopes are reduced (index times slope).
+  const Eigen::Matrix2d front = (index - 1) * lens.front.VertexCurvature();
+  const Eigen::Matrix2d at_front = camera_mm * identity;  // height by camera angle
+  const Eigen::Matrix2d inside = identity - front * at_front;
+  const Eigen::Matrix2d at_back = at_front + lens.center_thickness_mm / index * inside;
+
+  const Eigen::Vector3d e1(-toward.y(), toward.x(), 0);
+  const Eigen::Vector3d g2 = normal.cross(e1);
+  Eigen::Matrix2d basis, to_surface;
+  basis << e1.head<2>(), -toward;
+  to_surface << (axes.transpose() * e1).head<2>(), (axes.transpose() * g2).head<2>();
+  const Eigen::Matrix2d bend = to_surface.transpose() * lens.back.VertexCurvature() * to_surface;
+  const double ci = std::cos(incidence), co = std::cos(leaving);
+  const Eigen::DiagonalMatrix<double, 2> before(1, ci), over_before(1, 1 / ci), after(1, co),
+      over_after(1, 1 / co);
+  const Eigen::Matrix2d y = basis.transpose() * at_back, p = basis.transpose() * inside;
+  const Eigen::Matrix2d y_out = after * Eigen::Matrix2d(over_before * y);
+  const Eigen::Matrix2d p_out =
+      over_after * Eigen::Matrix2d(Eigen::Matrix2d(before * p) -
+                                   (co - index * ci) * bend * Eigen::Matrix2d(over_before * y));
+  // Along the deviated ray to the feature's plane, which it crosses at a slant.
+  const Eigen::Matrix2d y_plane = y_out + depth_mm / std::cos(deviation) * p_out;
+  const Eigen::DiagonalMatrix<double, 2> slant(1, 1 / std::cos(deviation));
+  const Eigen::Matrix2d feature = basis * Eigen::Matrix2d(slant * y_plane);
+  return (camera_mm + lens.center_thickness_mm + depth_mm) * feature.inverse();
+}
+
 Surface ToricSurface(const Eigen::Matrix2d& k, ToricGenerator generator, bool across_is_steeper) {
   const double mean = 0.5 * k.trace();
   const double half_difference = 0.5 * (k(0, 0) - k(1, 1)), off = 0.5 * (k(0, 1) + k(1, 0));

@@ -31,6 +31,17 @@ GroundPrism GrindPrism(const Eigen::Vector2d& prism, double index);
 Eigen::Matrix2d BackCurvature(const Eigen::Matrix2d& front_D, const Eigen::Matrix2d& power_D,
                               double thickness_mm, double index, const GroundPrism& prism);
 
+// The same by the paper's equation (1), F2 = F'v - F1 - tau F1^2, without prism.
+Eigen::Matrix2d PaperBackCurvature(const Eigen::Matrix2d& front_D, const Eigen::Matrix2d& power_D,
+                                   double thickness_mm, double index);
+
+// What a camera on the axis sees through a lens with ground prism, to first order about the axial
+// ray: the matrix of ObserverMagnification (optics/magnification.h), to which it tends without
+// prism. The pencil meets the tilted back obliquely, leaves deviated, and the feature stands in the
+// plane across the axis `depth_mm` behind the back vertex.
+Eigen::Matrix2d PrismaticObserverMagnification(const Lens& lens, double index, double camera_mm,
+                                               double depth_mm);
+
 // Sphere where the curvatures agree (kSphericalCurvature_per_mm), torus otherwise.
 //   across_is_steeper  the meridian across the minus axis is the one of greater signed curvature:
 //                      true for a back surface, false for a front one

@@ -37,6 +37,10 @@ std::optional<TscherningForms> Tscherning(Diopters power, double index, double s
   return TscherningForms{Diopters(std::min(one, other)), Diopters(std::max(one, other))};
 }
 
+Diopters ToolPower(Diopters power, double index, double tool_index) {
+  return power * ((tool_index - 1) / (index - 1));
+}
+
 Diopters SteepestBaseCurve(double rim_radius_mm, double index) {
   return Diopters::FromPerMm((index - 1) * kSteepestRimSine / rim_radius_mm);
 }

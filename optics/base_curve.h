@@ -27,6 +27,11 @@ struct TscherningForms {
 };
 std::optional<TscherningForms> Tscherning(Diopters power, double index, double stop_mm = 27);
 
+// Power that a surfacing tool or lens clock calibrated for `tool_index` shows for a surface whose
+// true power at `index` is `power`: the curvature is what both share.
+inline constexpr double kToolIndex = 1.530;
+Diopters ToolPower(Diopters power, double index, double tool_index = kToolIndex);
+
 // Steepest curve that still has a real front surface with a margin over a lens of this radius: the
 // sag's slope angle there stays below asin(kSteepestRimSine).
 inline constexpr double kSteepestRimSine = 0.85;

@@ -249,7 +249,13 @@ Result<Surface> MakeFront(const LensOrder& order, Diopters base, const Outline& 
   if (int(multifocal) + int(toric_front) + int(order.aspheric_gaze_deg.has_value()) > 1) {
     return UsageError("lens order: want one of a toric, an aspheric and a multifocal front");
   }
-  if (toric_front && (order.rx.prism_in.value() != 0 || order.rx.prism_up.value() != 0)) {
+  const bool prism = order.rx.prism_in.value() != 0 || order.rx.prism_up.value() != 0;
+  if (order.power_form == PowerForm::kPaper && (prism || toric_front)) {
+    return UsageError(
+        "lens order: the paper's equation (1) knows no prism and no toric front; possible: the "
+        "exact form");
+  }
+  if (toric_front && prism) {
     return UsageError("lens order: ground prism behind a toric front; possible: toric on the back");
   }
   if (order.segment) {

@@ -17,6 +17,9 @@
 namespace lorgnette {
 
 enum class ToricSide { kBack, kFront };
+// How F2 follows from the order: exactly, or by the paper's equation (1), P = F1 + F2 + tau F1^2,
+// whose lens errs by PaperPowerError (optics/paraxial.h).
+enum class PowerForm { kExact, kPaper };
 
 // Everything that fixes one lens. Contour points are in the lens frame's x, y (optics/ray.h: +x
 // toward the wearer's right, +y up), relative to the optical centre.
@@ -35,6 +38,7 @@ struct LensOrder {
 
   BaseCurveRule base_rule = BaseCurveRule::kVogel;  // where no base curve is given
   ToricSide toric_side = ToricSide::kBack;
+  PowerForm power_form = PowerForm::kExact;
   // Aspheric front: a fourth-order term that frees the lens of oblique astigmatism at this eye
   // rotation (degrees, about `stop_mm` behind the back vertex).
   std::optional<double> aspheric_gaze_deg;

@@ -106,6 +106,17 @@ std::optional<EdgeThickness> EdgeOver(const Lens& lens, const Outline& outline) 
   return edge;
 }
 
+std::vector<EdgePoint> EdgeProfile(const Lens& lens, const Outline& outline) {
+  std::vector<EdgePoint> profile;
+  for (const Eigen::Vector2d& p : outline.rim()) {
+    const auto front = lens.front.Jet(p.x(), p.y());
+    const auto thickness = AxialThickness(lens, p.x(), p.y());
+    if (!front || !thickness) return {};
+    profile.push_back({p, front->z, *thickness});
+  }
+  return profile;
+}
+
 double MassOver(const Lens& lens, const Outline& outline) {
   const double volume_mm3 =
       outline.Integrate([&](double x, double y) { return AxialThickness(lens, x, y).value_or(0); });

@@ -67,6 +67,14 @@ struct EdgeThickness {
 // nullopt where a surface does not reach the rim.
 std::optional<EdgeThickness> EdgeOver(const Lens& lens, const Outline& outline);
 
+// Thickness along the rim, in the order of outline.rim(): the profile that a bevel follows. Empty
+// where a surface does not reach it.
+struct EdgePoint {
+  Eigen::Vector2d at{0, 0};
+  double front_z_mm = 0, thickness_mm = 0;
+};
+std::vector<EdgePoint> EdgeProfile(const Lens& lens, const Outline& outline);
+
 // For a lens that reaches its rim, in grams.
 double MassOver(const Lens& lens, const Outline& outline);
 

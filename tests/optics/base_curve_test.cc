@@ -37,6 +37,13 @@ TEST(Tscherning, EndsWhereTheReferenceSays) {
   }
 }
 
+// Published case 13: polycarbonate, 0.45 D on the tool is 0.4976 D true; the back of -7.4976 D
+// wants a tool of -6.781.
+TEST(ToolPower, HasThePublishedTools) {
+  EXPECT_NEAR(ToolPower(Diopters(0.4976), 1.586).value(), 0.45, 5e-5);
+  EXPECT_NEAR(ToolPower(Diopters(-7.4976), 1.586).value(), -6.781, 5e-4);
+}
+
 // Retail rows of the reference: which of the bases 0.5, 2, 4, 6, 8, 10 serves best on either side
 // of each limit (n = 1.498 with 2.0 mm centres; n = 1.60 with 1.5 mm).
 TEST(BestForm, HasTheReferencesLimits) {

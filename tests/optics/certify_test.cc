@@ -133,6 +133,22 @@ TEST(Certify, PrismDoesNotDisturbThePower) {
   }
 }
 
+// The closed form of a lens with prism agrees with rays as closely as that of a lens without.
+TEST(Certify, MagnificationIsPredictedThroughPrismToo) {
+  for (const double prism : {0.0, 1e-7, 1.0, 6.0, 15.0}) {
+    LensOrder order = Order(5, -2, 35);
+    order.diameter_mm = 40;
+    order.rx.prism_in = PrismDiopters(-prism);
+    order.rx.prism_up = PrismDiopters(0.4 * prism);
+    const auto lens = Certify(*DesignLens(order));
+    ASSERT_TRUE(lens) << lens.error().message;
+    for (const Measurement& m : lens->certificate().measurements) {
+      if (!m.quantity.starts_with("magnification")) continue;
+      EXPECT_NEAR(m.measured, m.ordered, 2e-9) << prism;
+    }
+  }
+}
+
 TEST(Certify, RefusesALensThatDoesNotMatchItsOrder) {
   LensDesign design = *DesignLens(Order(-6));
   design.order.rx.sphere = Diopters(-5.85);

@@ -149,6 +149,22 @@ TEST(DesignLens, CutsToTheContour) {
   EXPECT_NEAR(DesignLens(order)->mass_g, design->mass_g, 1e-10);
 }
 
+TEST(EdgeProfile, FollowsTheRim) {
+  const LensDesign design = *DesignLens(Order(-5, -2, 30));
+  const Outline outline = Outline::Round(60);
+  const std::vector<EdgePoint> profile = EdgeProfile(design.lens, outline);
+  ASSERT_EQ(profile.size(), outline.rim().size());
+  double least = HUGE_VAL, greatest = 0;
+  for (const EdgePoint& p : profile) {
+    EXPECT_NEAR(p.at.norm(), 30, 1e-12);
+    EXPECT_EQ(p.front_z_mm, design.lens.front.Jet(p.at.x(), p.at.y())->z);
+    least = std::min(least, p.thickness_mm);
+    greatest = std::max(greatest, p.thickness_mm);
+  }
+  EXPECT_EQ(least, design.min_edge_thickness_mm);
+  EXPECT_EQ(greatest, design.max_edge_thickness_mm);
+}
+
 TEST(DesignLens, PlanoIsALensToo) {
   LensOrder order = Order(0);
   order.base_curve = Diopters(0);
