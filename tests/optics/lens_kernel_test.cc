@@ -383,6 +383,85 @@ TEST(LensKernel, RayThatTravelsTheOtherWayMisses) {
   EXPECT_EQ(RayStatus(batch.status[1]), RayStatus::kMissesSurface);
 }
 
+template <typename T>
+void ExpectAxialRaysMeetTheVertices() {
+  // A parabola has no quadratic term along its axis, a plane no root but one: 0 / 0 in forms that
+  // divide by a curvature.
+  for (const NamedLens& named : AllLenses()) {
+    if (named.lens.back_tilt_x != 0) continue;
+    for (const bool forward : {true, false}) {
+      Batch<T> batch(3);
+      const double z = forward ? 1 : -1;
+      for (std::size_t i = 0; i < 3; ++i) batch.Set(i, {{0, 0, -400 * z}, {0, 0, z}});
+      batch.Trace(named.lens, named.index);
+      for (std::size_t i = 0; i < 3; ++i) {
+        ASSERT_EQ(RayStatus(batch.status[i]), RayStatus::kOk) << named.name;
+        const double second = forward ? named.lens.center_thickness_mm : 0;
+        EXPECT_NEAR(double(batch.At(batch.exit, i, 0).z()), second,
+                    400 * std::numeric_limits<T>::epsilon())
+            << named.name;
+        EXPECT_NEAR(double(batch.At(batch.exit, i, 3).z()), z,
+                    8 * std::numeric_limits<T>::epsilon())
+            << named.name;
+      }
+    }
+  }
+}
+TEST(LensKernel, AxialRaysMeetTheVerticesInDouble) { ExpectAxialRaysMeetTheVertices<double>(); }
+TEST(LensKernel, AxialRaysMeetTheVerticesInFloat) { ExpectAxialRaysMeetTheVertices<float>(); }
+
+template <typename T>
+void ExpectGrazingRaysEndCleanly() {
+  // Parallel to the axis at the height where each sphere stands upright: the discriminant cancels.
+  const double radius = 74.9647941931;
+  const Lens lens = MakeLens(Sphere(0), Sphere(1 / radius), 1.5);
+  std::vector<double> heights;
+  for (double step = 1e-18; step < 1; step *= 10) {
+    heights.push_back(radius * (1 - step));
+    heights.push_back(radius * (1 + step));
+  }
+  Batch<T> batch(heights.size());
+  for (std::size_t i = 0; i < heights.size(); ++i) {
+    batch.Set(i, {{0, heights[i], -10}, {0, 0, 1}});
+  }
+  batch.Trace(lens, 1.5);
+  for (std::size_t i = 0; i < heights.size(); ++i) {
+    const double outside = heights[i] / radius - 1;
+    const auto status = RayStatus(batch.status[i]);
+    // Steeper than the critical angle from 2 / 3 of the radius on; never through.
+    EXPECT_NE(status, RayStatus::kOk);
+    if (outside > 1e-5) {
+      EXPECT_EQ(status, RayStatus::kMissesSurface);
+    }
+    if (outside < -1e-5 && outside > -0.3) {
+      EXPECT_EQ(status, RayStatus::kTotalInternalReflection);
+    }
+    if (status != RayStatus::kTotalInternalReflection) continue;
+    EXPECT_EQ(double(batch.r2[i]), 1);
+    const double sag =
+        radius - std::sqrt(std::max(0.0, (radius - heights[i]) * (radius + heights[i])));
+    // Next to upright the sag moves by the root of the height's rounding.
+    EXPECT_NEAR(double(batch.At(batch.inside, i, 0).z()), 1.5 + sag,
+                4 * radius * std::sqrt(std::numeric_limits<T>::epsilon()));
+  }
+}
+TEST(LensKernel, GrazingRaysEndCleanlyInDouble) { ExpectGrazingRaysEndCleanly<double>(); }
+TEST(LensKernel, GrazingRaysEndCleanlyInFloat) { ExpectGrazingRaysEndCleanly<float>(); }
+
+TEST(LensKernel, TracesThroughSurfacesThatHaveCrossed) {
+  // Beyond the knife edge of a plus lens the back lies before the front: the step is negative, and
+  // the trace goes on as the scalar path does.
+  const Lens lens = MakeLens(Sphere(0.02), Sphere(-0.01), 2);
+  Batch<double> batch(1);
+  const Ray ray{{0, 20, -30}, {0, 0, 1}};
+  batch.Set(0, ray);
+  batch.Trace(lens, 1.5);
+  const LensTrace scalar = TraceThrough(lens, ray, 1.5);
+  ASSERT_EQ(RayStatus(batch.status[0]), scalar.status);
+  EXPECT_LT(batch.At(batch.exit, 0, 0).z(), batch.At(batch.first, 0, 0).z());
+  EXPECT_LT((batch.At(batch.exit, 0, 0).cast<double>() - scalar.exit.origin).norm(), 1e-12);
+}
+
 TEST(LensKernel, EveryInstructionSetOfThisMachineAgrees) {
   const NamedLens named = TestLenses()[6];
   const std::vector<Ray> rays = TestRays(100, true, 23);
