@@ -31,6 +31,7 @@ declare module "*/wasm/optics.mjs" {
       height: number,
     ): number;
     _lg_view(slot: number, view: number, width: number, height: number): number;
+    _lg_rings(): number;
     UTF8ToString(pointer: number): string;
     stringToUTF8(text: string, pointer: number, bytes: number): void;
     lengthBytesUTF8(text: string): number;

@@ -5,6 +5,7 @@ import assert from "node:assert/strict";
 import { existsSync, mkdirSync, readdirSync, readFileSync } from "node:fs";
 import { createRequire } from "node:module";
 import { join } from "node:path";
+import { fileURLToPath } from "node:url";
 import { gzipSync } from "node:zlib";
 import { after, before, describe, test } from "node:test";
 
@@ -145,6 +146,29 @@ describe("the page", { skip }, () => {
     await close();
   });
 
+  test("a coat lets more light through, a tint less", async () => {
+    const { page, close } = await open();
+    const bare = Number(await number(page, "light-right"));
+    await page.getByLabel("Coating, both surfaces").selectOption("broadband");
+    assert.ok(Number(await number(page, "light-right")) > bare + 5);
+    await page.getByLabel("Tint").fill("50");
+    // Half of a clear lens' light, to the digit shown: the coat's part changes a little with it.
+    assert.ok(Math.abs(Number(await number(page, "light-right")) - 50) < 2);
+    await close();
+  });
+
+  test("a progressive takes effect with an addition", async () => {
+    const { page, close } = await open();
+    await page.getByLabel("Design").selectOption("progressive");
+    assert.ok(await page.getByText("Takes effect with an addition").isVisible());
+    const plain = await number(page, "edge-right");
+    await page.locator(".eye-right summary").click();
+    await page.getByRole("spinbutton", { name: "Right eye, Near addition in dioptres" }).fill("2");
+    assert.notEqual(await number(page, "edge-right"), plain);
+    assert.equal(await number(page, "backVertex-right"), "−4.25 / −5.00");
+    await close();
+  });
+
   test("a link carries the whole order", async () => {
     const first = await open();
     await sphere(first.page).fill("+3.25");
@@ -195,6 +219,20 @@ describe("the page", { skip }, () => {
     await page.getByText("Took the frame shape of job.oma.").waitFor();
     assert.equal(await page.getByLabel("Width A").inputValue(), "46");
     assert.equal(await page.getByLabel("Shape", { exact: true }).inputValue(), "traced");
+    await close();
+  });
+
+  const oma = fileURLToPath(new URL("../../../shared/data/oma/", import.meta.url));
+  test("real traces of labs come in, binary ones are refused", {
+    skip: existsSync(oma) ? false : "the shared test data is not here",
+  }, async () => {
+    const { page, close } = await open();
+    for (const name of readdirSync(oma).filter((n) => n.endsWith(".oma"))) {
+      const text = readFileSync(join(oma, name), "latin1");
+      await give(page, name, text);
+      const want = /^TRCFMT=1;/m.test(text) ? `Took the frame shape of ${name}` : `${name}:`;
+      await page.locator(".files .status").filter({ hasText: want }).waitFor();
+    }
     await close();
   });
 

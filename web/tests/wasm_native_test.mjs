@@ -16,6 +16,7 @@ const program = process.env.LORGNETTE ?? `${root}build/release/lorgnette`;
 
 const ORDERS = 500;
 const AT_ONCE = 4;
+const MEASURED_EVERY = 5; // of them also as a camera sees them
 // Both compilers keep to IEEE double and contract nothing; what differs is the C library's last
 // digit in sin, cos and atan2, a few ulp, which the steepest of these lenses magnify about 100 times.
 const RELATIVE = 1e-12;
@@ -88,7 +89,7 @@ const MERIDIANS = ["back_vertex_power_D", "front_vertex_power_D", "equivalent_po
   "front_power_D", "back_power_D", "paper_power_D", "shape_factor", "power_factor",
   "spectacle_magnification"];
 
-// [name, page, native] of every number that both state.
+// [name, page, native] of every number that both state; `measured` may be null.
 function numbers(page, lens, measured) {
   const rows = [];
   for (const name of MERIDIANS) {
@@ -105,7 +106,7 @@ function numbers(page, lens, measured) {
   rows.push(["edge_thickness_min_mm", page.edge_thickness_mm[0], lens.edge_thickness_min_mm]);
   rows.push(["edge_thickness_mm", page.edge_thickness_mm[1], lens.edge_thickness_mm]);
   rows.push(["mass_g", page.mass_g, lens.mass_g]);
-  for (const name of ["thin", "paraxial", "exact"]) {
+  for (const name of measured ? ["thin", "paraxial", "exact"] : []) {
     const key = `observer_magnification_${name}`;
     rows.push([key, page[key], measured[key]]);
   }
@@ -130,9 +131,10 @@ test("the page's numbers are the native program's for 500 random orders", {
   const orders = Array.from({ length: ORDERS }, () => randomOrder(random));
   let worst = { difference: 0 };
   let made = 0;
-  const compare = async (order) => {
+  const compare = async (order, i) => {
     const page = JSON.parse(callText(optics, "_lg_design", 0, JSON.stringify(toPage(order))));
-    const [lens, measured] = await Promise.all([native("lens", order), native("measure", order)]);
+    const lens = await native("lens", order);
+    const measured = i % MEASURED_EVERY || lens.refused ? null : await native("measure", order);
     const what = JSON.stringify(order);
     assert.equal(page.ok, !lens.refused, `${what}: ${page.error ?? lens.refused}`);
     if (!page.ok) return;
@@ -148,7 +150,7 @@ test("the page's numbers are the native program's for 500 random orders", {
     }
   };
   for (let i = 0; i < ORDERS; i += AT_ONCE) {
-    await Promise.all(orders.slice(i, i + AT_ONCE).map(compare));
+    await Promise.all(orders.slice(i, i + AT_ONCE).map((order, k) => compare(order, i + k)));
   }
   assert.ok(made > 0.6 * ORDERS, `only ${made} of the orders could be made`);
   console.log(`${made} lenses; worst relative difference ${worst.difference.toExponential(1)} ` +

@@ -42,7 +42,9 @@ lorgnette::Result<std::string> DesignInto(int slot, const std::string& order_jso
   LG_ASSIGN(auto design, lorgnette::DesignLens(page.order));
   LG_ASSIGN(auto certified, lorgnette::Certify(std::move(design)));
   const auto sheet = lorgnette::MakeLensSheet(certified.design(), page.request);
-  std::string json = lorgnette::page::SheetJson(certified, sheet);
+  LG_ASSIGN(const double light,
+            lorgnette::page::Transmittance(page, certified.lens().center_thickness_mm));
+  std::string json = lorgnette::page::SheetJson(certified, sheet, light);
   Slots()[std::size_t(slot)].emplace(std::move(certified));
   return json;
 }
@@ -65,6 +67,49 @@ Vector2d FacePoint(const Ray& ray, double back_vertex_z, const PageView& view) {
     p = ray.origin + steps * ray.direction;
   }
   return p.head<2>();
+}
+
+std::vector<float>& Rings() {
+  static std::vector<float> rings;
+  return rings;
+}
+
+// Within the cut outline, or the round lens where there is none.
+bool WithinCut(const lorgnette::LensOrder& order, const Vector2d& p) {
+  const auto& contour = order.contour_mm;
+  if (contour.empty()) return p.norm() < order.diameter_mm / 2;
+  bool inside = false;
+  for (std::size_t i = 0, j = contour.size() - 1; i < contour.size(); j = i++) {
+    const Vector2d &a = contour[i], &b = contour[j];
+    if ((a.y() > p.y()) != (b.y() > p.y()) &&
+        p.x() < (b.x() - a.x()) * (p.y() - a.y()) / (b.y() - a.y()) + a.x()) {
+      inside = !inside;
+    }
+  }
+  return inside;
+}
+
+// What is left of a camera's ray where, thrown back and forth between the surfaces, it first
+// strikes the wall of the edge; 0 when it does not within kRingBounces.
+double RingShare(int slot, const LensTrace& trace, const Vector3d& incident) {
+  constexpr int kRingBounces = 3;
+  const CertifiedLens& certified = *Slots()[std::size_t(slot)];
+  const Lens& lens = certified.lens();
+  const double n = lens.medium.index_d;
+  double share = 1 - lorgnette::FresnelReflectance(incident.dot(trace.first.normal), 1 / n);
+  Ray ray{trace.second.point, trace.inside_direction};
+  Vector3d normal = trace.second.normal;
+  for (int bounce = 0; bounce < kRingBounces; ++bounce) {
+    share *= lorgnette::FresnelReflectance(ray.direction.dot(normal), n);
+    ray.direction = lorgnette::Reflect(ray.direction, normal);
+    // Odd bounces go to the front, even ones to the back again.
+    const auto hit =
+        bounce % 2 == 0 ? lens.front.Intersect(ray) : lorgnette::IntersectBack(lens, ray);
+    if (!hit || !WithinCut(certified.design().order, hit->point.head<2>())) return share;
+    ray.origin = hit->point;
+    normal = hit->normal;
+  }
+  return 0;
 }
 
 }  // namespace
@@ -168,14 +213,18 @@ const double* lg_fan(int slot, double meridian_deg, double half_mm, int n, doubl
   return out.data();
 }
 
+const float* lg_rings() { return Rings().data(); }
+
 const float* lg_view(int slot, const PageView* view, int w, int h) {
   static std::vector<float> out;
   out.assign(4 * std::size_t(w) * std::size_t(h), 0);
   const Lens* lens = lorgnette::page::LensIn(slot);
   const Vector3d eye(view->cx, view->cy, -view->camera_mm);
   float* pixel = out.data();
+  Rings().assign(std::size_t(w) * std::size_t(h), 0);
+  float* ring = Rings().data();
   for (int j = 0; j < h; ++j) {
-    for (int i = 0; i < w; ++i, pixel += 4) {
+    for (int i = 0; i < w; ++i, pixel += 4, ++ring) {
       pixel[0] = float(RayStatus::kMissesSurface);
       if (!lens) continue;
       const double x = view->x0 + (view->x1 - view->x0) * (i + 0.5) / w;
@@ -187,6 +236,7 @@ const float* lg_view(int slot, const PageView* view, int w, int h) {
       const Vector2d face = FacePoint(trace.exit, lens->center_thickness_mm, *view);
       pixel[1] = float(face.x());
       pixel[2] = float(face.y());
+      *ring = float(RingShare(slot, trace, ray.direction));
       pixel[3] = float(Transmittance(trace, ray.direction, lens->medium.index_d));
     }
   }

@@ -23,7 +23,9 @@ inline constexpr int kPageSlots = 4;  // right, left, and two for comparisons
 //   {"eye": "right", "sphere": -4, "cylinder": -0.5, "axis": 90, "medium": {"name", "index_d",
 //    "abbe", "density_g_cm3"}, "base_curve_D", "center_thickness_mm", "min_center_thickness_mm",
 //    "min_edge_thickness_mm", "diameter_mm", "contour_mm": [x0, y0, ...], "vertex_distance_mm",
-//    "camera_mm", "depth_mm", "feature_height_mm", "feature_meridian_deg"}
+//    "camera_mm", "depth_mm", "feature_height_mm", "feature_meridian_deg", "design" (single, round,
+//    flat28, flat35, executive, progressive), "corridor_mm", "coat" (none, single, v, broadband),
+//    "tint" (0..0.96)}. A design other than single takes effect with an addition.
 // Returns {"ok": true, ...the names of `lorgnette lens --json`..., "certificate": [...]}
 // or {"ok": false, "error": sentence}.
 LG_PAGE_API const char* lg_design(int slot, const char* order_json);
@@ -61,6 +63,10 @@ struct PageView {
   double camera_mm, cx, cy, x0, y0, x1, y1, depth_mm, face_x_mm, flat_mm, curve;
 };
 LG_PAGE_API const float* lg_view(int slot, const PageView* view, int w, int h);
+
+// Beside the last lg_view, the power rings of its w x h pixels: the share of light with which the
+// cut edge's wall shows at each after reflections inside the bare lens. w h numbers.
+LG_PAGE_API const float* lg_rings();
 
 // What the turning eye meets over the lens: an n x m grid (rows downwards) of gazes from a centre
 // of rotation stop_mm behind the back vertex toward (x, y) of the plane through the back vertex,

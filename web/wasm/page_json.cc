@@ -6,6 +6,7 @@
 
 #include "base/json_reader.h"
 #include "optics/media.h"
+#include "optics/tint.h"
 
 namespace lorgnette::page {
 namespace {
@@ -39,6 +40,42 @@ Json EyeJson(const EyePrescription& rx) {
           {"prism_in", rx.prism_in.value()}, {"prism_up", rx.prism_up.value()}};
 }
 
+// The multifocal front that `design` names, for an order with an addition.
+void ReadDesign(JsonReader& json, LensOrder& order) {
+  const std::string design = json.StringOr("design", "single");
+  const double corridor = json.NumberOr("corridor_mm", ProgressiveOrder{}.corridor_mm, 6, 30);
+  const bool multifocal = order.rx.add.value() > 0;
+  if (design == "single") return;
+  if (design == "progressive") {
+    if (!multifocal) return;
+    order.progressive.emplace();
+    order.progressive->corridor_mm = corridor;
+    return;
+  }
+  SegmentOrder segment;
+  if (design == "round") {
+    segment.shape = SegmentShape::kRound;
+    segment.width_mm = 24;
+  } else if (design == "executive") {
+    segment.shape = SegmentShape::kExecutive;
+  } else if (design == "flat35") {
+    segment.width_mm = 35;
+  } else if (design != "flat28") {
+    json.Fail("design",
+              "got " + design + ", want single, round, flat28, flat35, executive or progressive");
+  }
+  if (multifocal) order.segment = segment;
+}
+
+CoatKind ReadCoat(JsonReader& json) {
+  const std::string coat = json.StringOr("coat", "none");
+  if (coat == "single") return CoatKind::kSingle;
+  if (coat == "v") return CoatKind::kVCoat;
+  if (coat == "broadband") return CoatKind::kBroadband;
+  if (coat != "none") json.Fail("coat", "got " + coat + ", want none, single, v or broadband");
+  return CoatKind::kNone;
+}
+
 }  // namespace
 
 Result<PageOrder> ReadOrder(const std::string& json_text) {
@@ -55,6 +92,9 @@ Result<PageOrder> ReadOrder(const std::string& json_text) {
   rx.add = Diopters(json.NumberOr("add", 0, 0, kMaxAdd));
   rx.prism_in = PrismDiopters(json.NumberOr("prism_in", 0, -kMaxPrism, kMaxPrism));
   rx.prism_up = PrismDiopters(json.NumberOr("prism_up", 0, -kMaxPrism, kMaxPrism));
+  ReadDesign(json, order);
+  page.coat = ReadCoat(json);
+  page.tint = json.NumberOr("tint", 0, 0, 0.96);
   if (json.Has("medium")) {
     JsonReader medium = json.Object("medium");
     order.medium.name = medium.StringOr("name", order.medium.name);
@@ -95,7 +135,17 @@ Result<PageOrder> ReadOrder(const std::string& json_text) {
   return page;
 }
 
-std::string SheetJson(const CertifiedLens& lens, const LensSheet& sheet) {
+Result<double> Transmittance(const PageOrder& page, double thickness_mm) {
+  LensFilter filter;
+  filter.index = page.order.medium.index_d;
+  filter.front_coat = filter.back_coat = page.coat;
+  if (page.tint > 0) {
+    LG_ASSIGN(filter.tint, GreyTint(TintKind::kDip, 1 - page.tint, thickness_mm));
+  }
+  return LuminousTransmittance(filter, 1, thickness_mm);
+}
+
+std::string SheetJson(const CertifiedLens& lens, const LensSheet& sheet, double transmittance) {
   Json certificate = Json::array();
   for (const Measurement& m : lens.certificate().measurements) {
     certificate.push_back({{"quantity", m.quantity},
@@ -108,6 +158,7 @@ std::string SheetJson(const CertifiedLens& lens, const LensSheet& sheet) {
                            {"passed", m.passed()}});
   }
   const Medium& medium = lens.lens().medium;
+  const std::optional<int> category = FilterCategory(transmittance);
   const Json out = {
       {"ok", true},
       {"index_d", medium.index_d},
@@ -125,6 +176,9 @@ std::string SheetJson(const CertifiedLens& lens, const LensSheet& sheet) {
       {"edge_thickness_mm",
        Json::array({Number(sheet.edge_thickness_min_mm), Number(sheet.edge_thickness_max_mm)})},
       {"mass_g", Number(sheet.mass_g)},
+      {"min_blank_mm", Number(lens.design().min_blank_mm)},
+      {"luminous_transmittance", transmittance},
+      {"filter_category", category ? Json(*category) : Json(nullptr)},
       {"pupil_mm", sheet.pupil_mm},
       {"shape_factor", Pair(sheet.shape_factor)},
       {"power_factor", Pair(sheet.power_factor)},

@@ -42,6 +42,9 @@ export interface Sheet {
   center_thickness_mm: number;
   edge_thickness_mm: Pair; // least, greatest
   mass_g: number;
+  min_blank_mm: number;
+  luminous_transmittance: number;
+  filter_category: number | null;
   pupil_mm: number;
   shape_factor: Pair;
   power_factor: Pair;
@@ -94,6 +97,10 @@ export interface LensOrder {
   depth_mm: number;
   feature_height_mm: number;
   feature_meridian_deg: number;
+  design: string;
+  corridor_mm: number;
+  coat: string;
+  tint: number; // share of light taken
 }
 
 // See PageView in web/wasm/page_api.h.
@@ -219,6 +226,12 @@ export class Engine {
     const out = this.module._lg_view(slot, at, width, height);
     this.module._free(at);
     return this.module.HEAPF32.slice(out / 4, out / 4 + 4 * width * height);
+  }
+
+  // The power rings beside the last view of this many pixels: share of light from the edge's wall.
+  rings(count: number): Float32Array {
+    const at = this.module._lg_rings() / 4;
+    return this.module.HEAPF32.slice(at, at + count);
   }
 
   private withPointer(text: string, call: (pointer: number) => number): number {

@@ -23,6 +23,9 @@ export interface Order {
   right: EyeRx;
   left: EyeRx;
   medium: string; // a name of MEDIA
+  design: string; // of DESIGNS
+  corridor: number; // mm, of a progressive
+  coat: string; // of COATS
   base: number | null; // D; null: by rule
   centre: number | null; // mm; null: by rule
   minCentre: number;
@@ -33,7 +36,7 @@ export interface Order {
   dbl: number;
   vertex: number; // mm
   camera: number; // mm before the lens
-  tint: number; // per cent of light that the tint takes
+  tint: number; // per cent of light that an even dip tint takes
   trace: number[] | null; // radii of a traced shape, mm, from an OMA file; replaces `shape`
 }
 
@@ -52,6 +55,9 @@ export const DEFAULT_ORDER: Order = {
   right: plainEye(-4.25, -0.75, 160),
   left: plainEye(-4.5, 0, null),
   medium: "1.60",
+  design: "single",
+  corridor: 14,
+  coat: "none",
   base: null,
   centre: null,
   minCentre: 1.5,
@@ -89,6 +95,7 @@ export const LIMITS = {
   dbl: { min: 8, max: 30, step: 1, places: 0 },
   vertex: { min: 5, max: 25, step: 0.5, places: 1 },
   camera: { min: 200, max: 4000, step: 50, places: 0 },
+  corridor: { min: 8, max: 24, step: 1, places: 0 },
   tint: { min: 0, max: 90, step: 5, places: 0 },
 } satisfies Record<string, Limit>;
 export type LimitName = keyof typeof LIMITS;
@@ -139,6 +146,10 @@ export function lensOrder(order: Order, eye: EyeName, change: Partial<Order> = {
     depth_mm: o.vertex + 3.05,
     feature_height_mm: IRIS_RADIUS_MM,
     feature_meridian_deg: 180,
+    design: o.design,
+    corridor_mm: o.corridor,
+    coat: o.coat,
+    tint: o.tint / 100,
   };
 }
 
@@ -147,7 +158,7 @@ export const IRIS_RADIUS_MM = 5.85;
 
 const EYE_FIELDS = ["sphere", "cylinder", "axis", "add", "prismIn", "prismUp", "pd"] as const;
 const NUMBER_FIELDS = [
-  "base", "centre", "minCentre", "minEdge", "a", "b", "dbl", "vertex", "camera", "tint",
+  "base", "centre", "minCentre", "minEdge", "a", "b", "dbl", "vertex", "camera", "tint", "corridor",
 ] as const;
 
 // The order as the part of a link after "#".
@@ -158,6 +169,8 @@ export function toLink(order: Order): string {
   }
   q.set("m", order.medium);
   q.set("f", order.shape);
+  q.set("d", order.design);
+  q.set("c", order.coat);
   for (const f of NUMBER_FIELDS) if (order[f] !== null) q.set(f, String(order[f]));
   if (order.trace) q.set("t", order.trace.map((r) => Math.round(r * 10)).join("_"));
   return q.toString();
@@ -186,6 +199,10 @@ export function fromLink(link: string): Order {
   }
   const medium = q.get("m");
   if (medium && medium in MEDIA) order.medium = medium;
+  const design = q.get("d");
+  if (design && DESIGNS.includes(design)) order.design = design;
+  const coat = q.get("c");
+  if (coat && COATS.includes(coat)) order.coat = coat;
   const shape = q.get("f");
   if (shape && SHAPES.includes(shape as FrameShape)) order.shape = shape as FrameShape;
   for (const f of NUMBER_FIELDS) {
@@ -197,4 +214,6 @@ export function fromLink(link: string): Order {
   return order;
 }
 
+export const DESIGNS = ["single", "round", "flat28", "flat35", "executive", "progressive"];
+export const COATS = ["none", "single", "v", "broadband"];
 export const SHAPES: FrameShape[] = ["panto", "round", "oval", "rect"];

@@ -16,6 +16,7 @@ import { photoMarks, type PhotoMarks } from "./photo";
 
 const GRID_PX = 3; // one exact ray every so many pixels; linear between them
 const IRIS_SAMPLES = 241;
+const EDGE_LIGHT = 0.8; // of a ground edge in the room's light, white being 1
 
 // +x of the lens frame is the wearer's right: the viewer's left.
 const side = (eye: EyeName): 1 | -1 => (eye === "right" ? 1 : -1);
@@ -93,6 +94,7 @@ function renderLens(
     y0: WINDOW.top - (box.py + gh * GRID_PX - half) / PX_PER_MM,
   };
   const map = engine.view(SLOT[eye], view, gw, gh);
+  const rings = engine.rings(gw * gh);
   // From points of the face to pixels of the source; the light kept stays as it is.
   for (let k = 0; k < gw * gh; ++k) {
     if (map[4 * k] !== 0) continue;
@@ -101,7 +103,13 @@ function renderLens(
     map[4 * k + 1] = (-faceX * scale - WINDOW.left) * PX_PER_MM;
     map[4 * k + 2] = (WINDOW.top - map[4 * k + 2] * scale) * PX_PER_MM;
   }
-  const tint = 1 - order.tint / 100;
+  // The map's light is that of bare surfaces by angle; coat and tint enter as they do straight on.
+  const bare = (1 - ((sheet.index_d - 1) / (sheet.index_d + 1)) ** 2) ** 2;
+  const filter = sheet.luminous_transmittance / bare;
+  // A coat takes from the rings what it takes from the reflections of a bare lens.
+  const untinted = sheet.luminous_transmittance / (1 - order.tint / 100);
+  const ringLight = (EDGE_LIGHT * Math.max(0, 1 - untinted)) /
+    (1 - (2 * sheet.index_d) / (sheet.index_d ** 2 + 1));
   const from = source.data;
   const to = out.data;
   const { width, height } = source;
@@ -125,7 +133,7 @@ function renderLens(
       const w11 = fi * fj;
       const x = w00 * map[k + 1] + w10 * map[k + 5] + w01 * map[kd + 1] + w11 * map[kd + 5] - 0.5;
       const y = w00 * map[k + 2] + w10 * map[k + 6] + w01 * map[kd + 2] + w11 * map[kd + 6] - 0.5;
-      const kept = tint * (w00 * map[k + 3] + w10 * map[k + 7] + w01 * map[kd + 3] + w11 * map[kd + 7]);
+      const kept = filter * (w00 * map[k + 3] + w10 * map[k + 7] + w01 * map[kd + 3] + w11 * map[kd + 7]);
       const cx = Math.min(width - 1.001, Math.max(0, x));
       const cy = Math.min(height - 1.001, Math.max(0, y));
       const ix = Math.floor(cx);
@@ -140,6 +148,14 @@ function renderLens(
         const top = from[s + c] + fx * (from[s + 4 + c] - from[s + c]);
         const low = from[sd + c] + fx * (from[sd + 4 + c] - from[sd + c]);
         to[o + c] = gain * (top + fy * (low - top));
+      }
+      const q = gj * gw + gi;
+      const ring = ringLight *
+        (w00 * rings[q] + w10 * rings[q + 1] + w01 * rings[q + gw] + w11 * rings[q + gw + 1]);
+      if (ring > 0.002) {
+        for (let c = 0; c < 3; ++c) {
+          to[o + c] = 255 * Math.pow(Math.pow(to[o + c] / 255, 2.2) + ring, 1 / 2.2);
+        }
       }
     }
   }

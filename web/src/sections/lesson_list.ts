@@ -80,7 +80,7 @@ export const LESSONS: Lesson[] = [
     id: "minkwitz",
     paragraphs: 2,
     look: "maps",
-    lens: { rx: { sphere: 0, cylinder: 0, axis: null, add: 2 } },
+    lens: { rx: { sphere: 0, cylinder: 0, axis: null, add: 2 }, design: "progressive", base: 5 },
     questions: [number(2 * (2 / 14), "D/mm", 0.006), number(2 * (2 / 14) * 5, "D", 0.03), choice(1)],
   },
   {

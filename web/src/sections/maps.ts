@@ -12,7 +12,6 @@ import { chart } from "../ui/chart";
 import { aroundZero, heatPicture, isoLine, rising, roundLevels, type Grid } from "../ui/contour";
 import { h, s, setText, uniqueId } from "../ui/dom";
 import { eyeSwitch } from "../ui/eye_switch";
-import { numberField } from "../ui/field";
 
 const STOP_MM = 27; // back vertex to the centre of rotation of the eye
 const COLUMNS = 49;
@@ -36,22 +35,11 @@ interface Field {
 
 export function mapsSection(store: Store, wanted: () => boolean): HTMLElement {
   let kind: Kind = "astigmatism";
-  let corridor = 14;
   let field: Field | null = null;
   const select = h("select", { id: uniqueId("map"), onchange: () => {
     kind = select.value as Kind;
     draw();
   } }, ...KINDS.map((k) => h("option", { value: k, selected: k === kind }, t(`maps.${k}` as TextKey))));
-  const corridorField = numberField({
-    label: t("maps.corridor"),
-    limit: { min: 8, max: 24, step: 1, places: 0 },
-    unit: "mm",
-    onValue: (value) => {
-      corridor = value ?? 14;
-      draw();
-    },
-  });
-  corridorField.set(corridor);
   const drawing = s("svg", { class: "map-drawing", role: "img" });
   const readout = h("p", { class: "told" });
   const summary = h("p", { class: "hint" });
@@ -71,8 +59,7 @@ export function mapsSection(store: Store, wanted: () => boolean): HTMLElement {
   const root = h("section", { class: "card maps" },
     h("div", { class: "card-head" }, h("h2", {}, t("maps.title")), eyeSwitch()),
     h("div", { class: "compare-controls" },
-      h("div", { class: "field" }, h("label", { for: select.id }, t("maps.show")), select),
-      corridorField.root),
+      h("div", { class: "field" }, h("label", { for: select.id }, t("maps.show")), select)),
     h("div", { class: "map-columns" },
       h("div", { class: "map-main" }, drawing, legend, readout, summary),
       h("div", {}, gazeFigure, minkwitzFigure)),
@@ -114,6 +101,7 @@ export function mapsSection(store: Store, wanted: () => boolean): HTMLElement {
 
   function progressiveField(): Field {
     const { order, sheet } = store.lenses;
+    const { corridor } = order;
     const add = order[view.eye].add;
     const n = PROGRESSIVE_GRID;
     const pairs = store.engine.progressiveMap(sheet[view.eye].front_power_D[0], add, corridor,
@@ -162,7 +150,7 @@ export function mapsSection(store: Store, wanted: () => boolean): HTMLElement {
 
   function draw(): void {
     const progressive = kind === "progPower" || kind === "progAstigmatism";
-    corridorField.root.hidden = minkwitzFigure.hidden = !progressive;
+    minkwitzFigure.hidden = !progressive;
     gazeFigure.hidden = progressive;
     const { order } = store.lenses;
     setText(text, progressive && order[view.eye].add === 0 ? t("maps.noAdd")

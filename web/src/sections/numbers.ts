@@ -32,6 +32,7 @@ const ROWS: Row[] = [
   { key: "edge", unit: "mm", show: (s) =>
       `${fixed(s.edge_thickness_mm[0], 2)} … ${fixed(s.edge_thickness_mm[1], 2)}` },
   { key: "mass", unit: "g", show: (s) => fixed(s.mass_g, 1) },
+  { key: "light", unit: "%", show: (s) => fixed(100 * s.luminous_transmittance, 1) },
   { key: "wearer", unit: "%", show: (s) =>
       both(s.spectacle_magnification, (v) => signed(100 * ((v ?? 1) - 1), 2)) },
   { key: "observer", unit: "%", show: (s) =>

@@ -3,7 +3,7 @@
 
 import { MEDIA } from "../app/media";
 import {
-  EYES, LIMITS, SHAPES, rxProblem, transposed,
+  COATS, DESIGNS, EYES, LIMITS, SHAPES, rxProblem, transposed,
   type EyeName, type EyeRx, type LimitName, type Order,
 } from "../app/order";
 import { fixed, signed } from "../app/format";
@@ -163,6 +163,21 @@ export function orderForm(store: Store): HTMLElement {
     Object.entries(MEDIA).map(([key, m]) => [key, `${m.name}, n ${m.index_d}`]),
     (value) => store.set({ medium: value }),
   );
+  const [designField, design] = select(
+    t("order.design"),
+    DESIGNS.map((d) => [d, t(`design.${d}` as TextKey)]),
+    (value) => {
+      store.set({ design: value });
+      showDesign();
+    },
+  );
+  const [coatField, coat] = select(
+    t("order.coat"),
+    COATS.map((c) => [c, t(`coat.${c}` as TextKey)]),
+    (value) => store.set({ coat: value }),
+  );
+  const designHint = h("p", { class: "hint" }, t("order.wantAdd"));
+  const corridor = field("corridor", "mm");
   const [shapeField, shape] = select(
     t("order.shape"),
     [...SHAPES.map((s): [string, string] => [s, t(`shape.${s}` as TextKey)]),
@@ -181,8 +196,10 @@ export function orderForm(store: Store): HTMLElement {
     h("section", { class: "card" },
       h("h3", {}, t("order.lens")),
       mediumField,
+      designField, designHint, corridor,
       h("div", { class: "row2" }, field("base", "D", true, 4), field("centre", "mm", true, 2)),
-      h("div", { class: "row2" }, field("minCentre", "mm"), field("minEdge", "mm"))),
+      h("div", { class: "row2" }, field("minCentre", "mm"), field("minEdge", "mm")),
+      coatField),
     h("section", { class: "card" },
       h("h3", {}, t("order.frame")),
       shapeField,
@@ -209,17 +226,26 @@ export function orderForm(store: Store): HTMLElement {
   );
   root.addEventListener("submit", (event) => event.preventDefault());
 
+  function showDesign(): void {
+    const { order } = store;
+    corridor.hidden = order.design !== "progressive";
+    designHint.hidden = order.design === "single" || EYES.some((eye) => order[eye].add > 0);
+  }
   function showOrder(): void {
     const { order } = store;
     for (const eye of EYES) eyes[eye].show(order[eye]);
     for (const [name, f] of Object.entries(plain)) f.set(order[name as PlainField]);
     medium.value = order.medium;
+    design.value = order.design;
+    coat.value = order.coat;
+    showDesign();
     shape.value = order.trace ? "traced" : order.shape;
     (shape.lastElementChild as HTMLOptionElement).disabled = !order.trace;
   }
   showOrder();
   store.onReplaced(showOrder);
   store.onLenses(({ sheet }) => {
+    showDesign();
     plain.base?.setPlaceholder(fixed(sheet.right.front_power_D[0], 2));
     plain.centre?.setPlaceholder(fixed(sheet.right.center_thickness_mm, 1));
   });

@@ -173,6 +173,16 @@ function explanations(order: Order, sheet: Sheet): Explanation[] {
       ],
     },
     {
+      key: "light",
+      value: `${fixed(100 * sheet.luminous_transmittance, 1)} %`,
+      steps: [
+        "R = ((n − 1) / (n + 1))^2^,   T = 2 n / (n^2^ + 1)",
+        `R = ${fixed(100 * ((n - 1) / (n + 1)) ** 2, 3)} %,   T = ${fixed((200 * n) / (n * n + 1), 3)} %`,
+        `${t("why.withCoat")} ${fixed(100 * sheet.luminous_transmittance, 3)} %` +
+          (sheet.filter_category === null ? "" : `, ${t("why.category")} ${sheet.filter_category}`),
+      ],
+    },
+    {
       key: "wearer",
       value: pair((v) => `${signed(100 * (v.wearer - 1), 2)} %`),
       steps: [
