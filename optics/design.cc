@@ -108,8 +108,10 @@ struct Plan {
     }
     lens.front = order.aspheric_gaze_deg ? Surface(ConicSurface{Curvature(), 0, {a4}}) : front;
     const Eigen::Matrix2d front_D = 1000 * (n - 1) * lens.front.VertexCurvature();
-    lens.back =
-        ToricSurface(BackCurvature(front_D, power, thickness_mm, n, prism), order.generator, true);
+    const Eigen::Matrix2d bend = order.power_form == PowerForm::kPaper
+                                     ? PaperBackCurvature(front_D, power, thickness_mm, n)
+                                     : BackCurvature(front_D, power, thickness_mm, n, prism);
+    lens.back = ToricSurface(bend, order.generator, true);
     return lens;
   }
   double ReducedPower(double thickness_mm) const {

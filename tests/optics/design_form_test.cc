@@ -155,7 +155,8 @@ TEST(PaperForm, ErrsByItsKnownRemainder) {
   for (const Row& row :
        {Row{1.6, 1.5, 2, 7.0e-6}, Row{1.5, 5, 8, 0.00584}, Row{1.74, 7, 12, 0.0294},
         Row{1.5, 8, 14, 0.0843}, Row{1.5, 9, 16, 0.163}}) {
-    LensOrder order = Order(row.front - 4);
+    const double ordered = std::min(row.front - 4, 6.0);
+    LensOrder order = Order(ordered);
     order.medium.index_d = row.index;
     order.base_curve = Diopters(row.front);
     order.center_thickness_mm = row.thickness;
@@ -164,7 +165,7 @@ TEST(PaperForm, ErrsByItsKnownRemainder) {
     const auto design = DesignLens(order);
     ASSERT_TRUE(design) << design.error().message;
     const double got = MeasurePower(design->lens, row.index)->power_D(0, 0);
-    EXPECT_NEAR(got - (row.front - 4), row.error, 0.006 * row.error + 1e-8);
+    EXPECT_NEAR(got - ordered, row.error, 0.006 * row.error + 1e-8);
     // Only the strongest leaves the tolerance of 0.13 D, and the certificate says so.
     EXPECT_EQ(bool(Certify(*design)), row.error < 0.13);
   }
