@@ -11,6 +11,7 @@
 #include "apps/lens_json.h"
 #include "apps/lens_options.h"
 #include "apps/lens_text.h"
+#include "apps/rx_file.h"
 #include "base/atomic_file.h"
 
 namespace lorgnette {
@@ -19,6 +20,7 @@ namespace {
 struct LensCommandOptions {
   LensOptions lens;
   std::string rx;
+  std::optional<double> pd_mm;
   bool json = false;
   std::string svg;
 };
@@ -32,8 +34,7 @@ Result<std::vector<LensOrder>> Orders(const LensCommandOptions& options) {
     return UsageError("--sphere: got it together with the prescription " + options.rx +
                       ", want one of the two");
   }
-  LG_ASSIGN(const std::string text, ReadFile(options.rx));
-  LG_ASSIGN(const Prescription rx, ParsePrescription(text, options.rx));
+  LG_ASSIGN(const Prescription rx, ReadRxFile(options.rx, options.pd_mm));
   LensOptions lens = options.lens;
   lens.vertex_distance_mm = rx.vertex_distance_mm;
   LG_ASSIGN(LensOrder right, OrderFromPrescription(rx.right, Eye::kRight, lens));
@@ -79,6 +80,7 @@ void AddLensCommand(CLI::App& program, CommandContext& context) {
       "lens", "Design the lenses of a prescription, measure them by rays, print their sheet");
   const auto options = std::make_shared<LensCommandOptions>();
   command.add_option("rx", options->rx, "Prescription file (JSON); or give --sphere");
+  command.add_option("--pd", options->pd_mm, "Distance between the pupils, mm, for the file's");
   AddPowerOptions(command, options->lens);
   AddMakingOptions(command, options->lens);
   command.add_flag("--json", options->json, "Print JSON in place of text");

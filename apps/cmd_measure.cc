@@ -11,6 +11,7 @@
 #include "apps/commands.h"
 #include "apps/lens_json.h"
 #include "apps/lens_options.h"
+#include "optics/gaze.h"
 
 namespace lorgnette {
 namespace {
@@ -18,11 +19,40 @@ namespace {
 struct MeasureOptions {
   LensOptions lens;
   std::optional<double> camera_mm, depth_mm, height_mm;
+  std::vector<double> gaze_deg;  // theta, phi
+  double stop_mm = 27;
 };
 
 Status CheckPositive(const char* name, double value) {
   if (value > 0 && std::isfinite(value)) return {};
   return UsageError(fmt::format("{}: got {}, want more than 0 mm", name, value));
+}
+
+constexpr double kMaxTheta_deg = 60, kMaxPhi_deg = 360;
+
+// What the rotating eye meets, the object at infinity.
+Status AddGaze(const MeasureOptions& options, const Lens& lens, nlohmann::ordered_json& json) {
+  if (options.gaze_deg.size() != 2) return UsageError("--gaze: want THETA,PHI in degrees");
+  const double theta = options.gaze_deg[0], phi = options.gaze_deg[1];
+  if (!(std::abs(theta) <= kMaxTheta_deg && std::abs(phi) <= kMaxPhi_deg)) {
+    return UsageError(fmt::format("--gaze: got {},{}, want at most {},{} degrees", theta, phi,
+                                  kMaxTheta_deg, kMaxPhi_deg));
+  }
+  LG_RETURN_IF_ERROR(CheckPositive("--stop", options.stop_mm));
+  const GazeVergence gaze =
+      EvaluateGaze(lens, lens.medium.index_d, EyePose::OnAxis(lens, options.stop_mm),
+                   {RadiansFromDegrees(theta), RadiansFromDegrees(phi)});
+  if (gaze.status != RayStatus::kOk) {
+    return Failure(fmt::format("--gaze: no ray passes the lens at {},{} degrees", theta, phi));
+  }
+  json["gaze_deg"] = options.gaze_deg;
+  json["stop_mm"] = options.stop_mm;
+  json["sagittal_D"] = gaze.sagittal_D;
+  json["tangential_D"] = gaze.tangential_D;
+  json["sphere_D"] = gaze.power.sphere.value();
+  json["cylinder_D"] = gaze.power.cylinder.value();
+  json["axis_deg"] = gaze.power.axis.value();
+  return {};
 }
 
 Status Measure(const MeasureOptions& options, std::ostream& out) {
@@ -68,6 +98,7 @@ Status Measure(const MeasureOptions& options, std::ostream& out) {
   } else {
     json["pupil_mm"] = sheet.pupil_mm;
   }
+  if (!options.gaze_deg.empty()) LG_RETURN_IF_ERROR(AddGaze(options, design.lens, json));
   out << json.dump(2) << '\n';
   return {};
 }
@@ -87,12 +118,22 @@ void AddMeasureCommand(CLI::App& program, CommandContext& context) {
                      "What it sees lies this many mm behind the back vertex; the wearer's entrance "
                      "pupil is put there too");
   command.add_option("--height", options->height_mm, "... and this many mm off the axis");
+  command
+      .add_option("--gaze", options->gaze_deg,
+                  "Vergence for an eye turned by THETA degrees from the axis, in the direction PHI "
+                  "from the wearer's right toward up; object at infinity")
+      ->delimiter(',')
+      ->expected(2);
+  command
+      .add_option("--stop", options->stop_mm, "The eye turns this many mm behind the back vertex")
+      ->capture_default_str();
   command.footer(
       "Examples:\n"
       "  lorgnette measure --sphere -6 --index 1.498 --base 3 --center-thickness 2\n"
       "  lorgnette measure --front-radius 91.21 --back-radius 60,52 --axis 90 --center-thickness "
       "2\n"
-      "  lorgnette measure --sphere -6 --camera 500 --depth 15 --height 5.85");
+      "  lorgnette measure --sphere -6 --camera 500 --depth 15 --height 5.85\n"
+      "  lorgnette measure --sphere -6 --gaze 30,0 --stop 27");
   command.final_callback([options, &context] { context.status = Measure(*options, context.out); });
 }
 

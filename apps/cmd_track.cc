@@ -9,9 +9,8 @@
 
 #include "apps/commands.h"
 #include "apps/frame_range.h"
+#include "apps/rx_file.h"
 #include "apps/track_pipeline.h"
-#include "base/atomic_file.h"
-#include "optics/prescription.h"
 
 namespace lorgnette {
 namespace {
@@ -19,21 +18,17 @@ namespace {
 struct TrackCommandOptions {
   TrackRequest request;
   std::string rx, frames, output;
-  double pd_mm = 0;
+  std::optional<double> pd_mm;
 };
 
 Status RunTrack(TrackCommandOptions options, std::ostream& out) {
   TrackRequest& request = options.request;
   LG_ASSIGN(request.frames, ParseFrameRange(options.frames));
-  if (!options.rx.empty() && options.pd_mm != 0) {
-    return UsageError("--pd: got it together with --rx, want one of the two");
-  }
   if (!options.rx.empty()) {
-    LG_ASSIGN(const std::string text, ReadFile(options.rx));
-    LG_ASSIGN(const Prescription rx, ParsePrescription(text, options.rx));
+    LG_ASSIGN(const Prescription rx, ReadRxFile(options.rx, options.pd_mm));
     request.pd_mm = rx.pd_mm();
-  } else if (options.pd_mm != 0) {
-    request.pd_mm = options.pd_mm;
+  } else if (options.pd_mm) {
+    request.pd_mm = *options.pd_mm;
   }
   LG_ASSIGN(const HeadTrack track, TrackVideo(request));
   LG_RETURN_IF_ERROR(WriteHeadTrack(track, options.output));
@@ -54,7 +49,7 @@ void AddTrackCommand(CLI::App& program, CommandContext& context) {
   command.add_option("-o,--output", options->output, "Track file to write (JSON)")->required();
   command.add_option("--rx", options->rx, "Prescription, for the distance between the pupils");
   command.add_option("--pd", options->pd_mm,
-                     "Distance between the pupils, mm (64 if neither is given)");
+                     "Distance between the pupils, mm, for the prescription's (64 without either)");
   command.add_option("--focal", options->request.focal_px,
                      "Focal length of the camera, pixels (estimated if absent)");
   command.add_option("--frames", options->frames, "Part of the clip, A:B, first and last frame");

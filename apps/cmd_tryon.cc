@@ -8,6 +8,7 @@
 #include <ostream>
 
 #include "apps/commands.h"
+#include "apps/lens_options.h"
 #include "apps/tryon_pipeline.h"
 
 namespace lorgnette {
@@ -19,7 +20,8 @@ struct TryonCommandOptions {
   std::string shadow = "baked";
   bool no_refraction = false, no_reflection = false, no_shadow = false;
   std::vector<double> nudge;
-  double index = Medium{}.index_d;
+  std::string medium = "CR-39";
+  std::optional<double> index;
 };
 
 constexpr int kMaxSamplesPerSide = 8;
@@ -52,13 +54,7 @@ Status RunTryonCommand(TryonCommandOptions options, std::ostream& out) {
     return UsageError(fmt::format("--samples: got {}, want 1..{}", compositor.samples_per_side,
                                   kMaxSamplesPerSide));
   }
-  if (!(options.index >= 1.3 && options.index <= 2.2)) {
-    return UsageError(fmt::format("--index: got {}, want 1.3..2.2", options.index));
-  }
-  if (options.index != Medium{}.index_d) {
-    request.eyewear.medium.name = fmt::format("n = {}", options.index);
-    request.eyewear.medium.index_d = options.index;
-  }
+  LG_ASSIGN(request.eyewear.medium, MediumFromOptions(options.medium, options.index, std::nullopt));
   compositor.refraction = !options.no_refraction;
   compositor.reflection = !options.no_reflection;
   compositor.shadow = options.no_shadow           ? ShadowMode::kNone
@@ -101,8 +97,13 @@ void AddTryonCommand(CLI::App& program, CommandContext& context) {
   command.add_option("--shadow", options->shadow, "Shadow: baked (fast) or paper (Algorithm 1)")
       ->check(CLI::IsMember({"baked", "paper"}))
       ->capture_default_str();
-  command.add_option("--index", options->index, "Refractive index of the lenses")
+  command
+      .add_option("--medium", options->medium,
+                  "Lens material: CR-39, crown, Trivex, polycarbonate, 1.60, 1.67, 1.74")
       ->capture_default_str();
+  command.add_option("--index", options->index, "Refractive index, for the material's");
+  command.add_option("--pd", request.pd_mm,
+                     "Distance between the pupils, mm, for the prescription's");
   command
       .add_option("--samples", request.compositor.samples_per_side,
                   "Samples a pixel along each side")

@@ -47,6 +47,7 @@ Json LensJson(const LensDesign& design, const LensSheet& sheet) {
   json["front_power_D"] = Number(sheet.front_power_D.along);
   json["back_power_D"] = Number(sheet.back_power_D.along);
   json["radius_front_mm"] = Number(sheet.radius_front_mm.along);
+  json["radii_front_mm"] = Pair(sheet.radius_front_mm);
   json["radii_back_mm"] = Pair(sheet.radii_back_mm);
   json["center_thickness_mm"] = sheet.center_thickness_mm;
   json["edge_thickness_mm"] = Number(sheet.edge_thickness_max_mm);

@@ -8,6 +8,10 @@
 #include <CLI/Formatter.hpp>
 #include <cmath>
 
+#include "base/atomic_file.h"
+#include "geometry/frame_io.h"
+#include "optics/base_curve.h"
+#include "optics/media.h"
 #include "optics/outline.h"
 #include "optics/paraxial.h"
 
@@ -26,8 +30,9 @@ constexpr double kMinDiameter_mm = 5, kMaxDiameter_mm = 120;
 constexpr double kMaxBase_D = 25;
 
 Status CheckMaking(const LensOptions& o) {
-  LG_RETURN_IF_ERROR(CheckRange("--index", o.index, kMinIndex, kMaxIndex));
-  LG_RETURN_IF_ERROR(CheckRange("--density", o.density_g_cm3, 0.5, 6));
+  if (o.aspheric_gaze_deg) {
+    LG_RETURN_IF_ERROR(CheckRange("--aspheric", *o.aspheric_gaze_deg, 5, 45));
+  }
   LG_RETURN_IF_ERROR(CheckRange("--diameter", o.diameter_mm, kMinDiameter_mm, kMaxDiameter_mm));
   LG_RETURN_IF_ERROR(CheckRange("--vertex", o.vertex_distance_mm, kMinVertex_mm, kMaxVertex_mm));
   if (o.base_D) LG_RETURN_IF_ERROR(CheckRange("--base", *o.base_D, -kMaxBase_D, kMaxBase_D));
@@ -53,17 +58,32 @@ Status CheckPower(const LensOptions& o) {
   return {};
 }
 
-void SetMaking(const LensOptions& options, LensOrder& order) {
+Status SetMaking(const LensOptions& options, LensOrder& order) {
   order.eye = options.eye == "left" ? Eye::kLeft : Eye::kRight;
-  order.medium.index_d = options.index;
-  order.medium.density_g_cm3 = options.density_g_cm3;
-  if (options.index != Medium{}.index_d) order.medium.name = fmt::format("n = {}", options.index);
+  LG_ASSIGN(order.medium, MediumFromOptions(options.medium, options.index, options.density_g_cm3));
   if (options.base_D) order.base_curve = Diopters(*options.base_D);
   order.center_thickness_mm = options.center_thickness_mm;
   order.diameter_mm = options.diameter_mm;
   order.vertex_distance_mm = options.vertex_distance_mm;
   order.generator = options.generator == "along" ? ToricGenerator::kAlongMinusAxis
                                                  : ToricGenerator::kAcrossMinusAxis;
+  order.toric_side = options.toric == "front" ? ToricSide::kFront : ToricSide::kBack;
+  order.base_rule =
+      options.base_rule == "tscherning" ? BaseCurveRule::kTscherning : BaseCurveRule::kVogel;
+  order.aspheric_gaze_deg = options.aspheric_gaze_deg;
+  return {};
+}
+
+// The chart's base curve, when it is asked for and no other is given. Needs order.rx and medium.
+Status ApplyChart(const LensOptions& options, LensOrder& order) {
+  if (options.base_rule != "chart" || order.base_curve) return {};
+  const std::string path =
+      options.chart.empty() ? DataDirectory() + "/base_curves.json" : options.chart;
+  LG_ASSIGN(const std::string text, ReadFile(path));
+  LG_ASSIGN(const BaseCurveChart chart, ParseBaseCurveChart(text, path));
+  const Diopters equivalent = order.rx.sphere + 0.5 * order.rx.cylinder;
+  LG_ASSIGN(order.base_curve, chart.Choose(order.medium.name, order.medium.index_d, equivalent));
+  return {};
 }
 
 double CurvatureOf(double radius_mm) { return std::isinf(radius_mm) ? 0 : 1 / radius_mm; }
@@ -107,8 +127,8 @@ Result<LensDesign> LensFromSurfaces(const LensOptions& o) {
   }
   LensDesign design;
   LensOrder& order = design.order;
-  SetMaking(o, order);
-  const double n = o.index;
+  LG_RETURN_IF_ERROR(SetMaking(o, order));
+  const double n = order.medium.index_d;
   design.lens.medium = order.medium;
   design.lens.center_thickness_mm = *o.center_thickness_mm;
   design.lens.front = SphereSurface{CurvatureOf(*o.front_radius_mm)};
@@ -147,12 +167,40 @@ Result<LensDesign> LensFromSurfaces(const LensOptions& o) {
 
 }  // namespace
 
+Result<Medium> MediumFromOptions(const std::string& name, std::optional<double> index,
+                                 std::optional<double> density_g_cm3) {
+  LG_ASSIGN(const MediumEntry entry, FindMedium(name));
+  Medium medium = entry.medium;
+  if (index) {
+    LG_RETURN_IF_ERROR(CheckRange("--index", *index, kMinIndex, kMaxIndex));
+    if (*index != medium.index_d) medium.name = fmt::format("n = {}", *index);
+    medium.index_d = *index;
+  }
+  if (density_g_cm3) {
+    LG_RETURN_IF_ERROR(CheckRange("--density", *density_g_cm3, 0.5, 8));
+    medium.density_g_cm3 = *density_g_cm3;
+  }
+  return medium;
+}
+
 void AddMakingOptions(CLI::App& command, LensOptions& o) {
-  command.add_option("--index", o.index, "Refractive index at the d line")->capture_default_str();
-  command.add_option("--density", o.density_g_cm3, "Density of the medium, g/cm3")
+  command
+      .add_option("--medium", o.medium,
+                  "Material: CR-39, crown, Trivex, polycarbonate, 1.60, 1.67, 1.74")
       ->capture_default_str();
+  command.add_option("--index", o.index, "Refractive index at the d line, for the material's");
+  command.add_option("--density", o.density_g_cm3, "Density, g/cm3, for the material's");
   command.add_option("--base", o.base_D,
                      "Base curve: power of the front surface at the index, D (by rule if absent)");
+  command.add_option("--base-rule", o.base_rule, "Rule for the base curve")
+      ->check(CLI::IsMember({"vogel", "chart", "tscherning"}))
+      ->capture_default_str();
+  command.add_option("--chart", o.chart, "Base curve chart for --base-rule chart (JSON; ours)");
+  command.add_option("--aspheric", o.aspheric_gaze_deg,
+                     "Aspheric front, free of oblique astigmatism at this eye rotation, degrees");
+  command.add_option("--toric", o.toric, "Side of the torus")
+      ->check(CLI::IsMember({"back", "front"}))
+      ->capture_default_str();
   command.add_option("--center-thickness", o.center_thickness_mm,
                      "Centre thickness, mm (by rule if absent)");
   command.add_option("--diameter", o.diameter_mm, "Diameter of the round lens, mm")
@@ -199,8 +247,9 @@ Result<LensOrder> OrderFromOptions(const LensOptions& options) {
   rx.prism_in = PrismDiopters(options.prism_in);
   rx.prism_up = PrismDiopters(options.prism_up);
   LensOrder order;
-  SetMaking(options, order);
+  LG_RETURN_IF_ERROR(SetMaking(options, order));
   order.rx = rx;
+  LG_RETURN_IF_ERROR(ApplyChart(options, order));
   return order;
 }
 
@@ -208,9 +257,10 @@ Result<LensOrder> OrderFromPrescription(const EyePrescription& rx, Eye eye,
                                         const LensOptions& options) {
   LG_RETURN_IF_ERROR(CheckMaking(options));
   LensOrder order;
-  SetMaking(options, order);
+  LG_RETURN_IF_ERROR(SetMaking(options, order));
   order.eye = eye;
   order.rx = rx;
+  LG_RETURN_IF_ERROR(ApplyChart(options, order));
   return order;
 }
 

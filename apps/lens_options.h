@@ -26,11 +26,18 @@ struct LensOptions {
   std::vector<double> back_radii_mm;      // along the axis, and across it
   std::optional<double> center_thickness_mm;
   std::string eye = "right";
-  std::string generator = "across";
-  double index = 1.498, density_g_cm3 = 1.32;
+  std::string generator = "across", toric = "back", base_rule = "vogel";
+  std::string chart;  // file, for the base rule "chart"; empty: ours
+  std::string medium = "CR-39";
+  std::optional<double> index, density_g_cm3;  // in place of the medium's
+  std::optional<double> aspheric_gaze_deg;
   double diameter_mm = 60;
   double vertex_distance_mm = 13;
 };
+
+// The medium by name, with the index and the density given in place of its own.
+Result<Medium> MediumFromOptions(const std::string& name, std::optional<double> index,
+                                 std::optional<double> density_g_cm3);
 
 // Options that concern how a lens is made, whatever its power.
 void AddMakingOptions(CLI::App& command, LensOptions& options);

@@ -11,6 +11,7 @@
 #include <cmath>
 #include <filesystem>
 
+#include "apps/rx_file.h"
 #include "apps/still_choice.h"
 #include "apps/track_pipeline.h"
 #include "apps/tryon_report.h"
@@ -322,8 +323,7 @@ Result<TryonResult> RunTryon(const TryonRequest& request) {
   StageSeconds& seconds = result.seconds;
   const auto start = Clock::now();
 
-  LG_ASSIGN(const std::string rx_text, ReadFile(request.rx));
-  LG_ASSIGN(result.prescription, ParsePrescription(rx_text, request.rx));
+  LG_ASSIGN(result.prescription, ReadRxFile(request.rx, request.pd_mm));
   LG_ASSIGN(const FrameModel frame, LoadFrame(request.frame));
   LG_ASSIGN(const Environment environment, ReadEnvironment(request, result));
   LG_ASSIGN(VideoReader reader, VideoReader::Open(request.video));
@@ -350,13 +350,14 @@ Result<TryonResult> RunTryon(const TryonRequest& request) {
   TriangleMesh occluder;
   {
     const Timer timer(seconds.design);
-    LG_ASSIGN(const Fit fit,
-              PlaceOnFace(frame, track.face, track.pupil_right, track.pupil_left, request.fit));
+    LG_ASSIGN(FittedEyewear fitted,
+              FitEyewear(frame, track.face, track.pupil_right, track.pupil_left,
+                         result.prescription, request.fit, request.eyewear));
+    const Fit& fit = fitted.fit;
     result.pad_shift_mm = fit.pad_shift_mm;
     result.temple_opening_deg = fit.temple_opening_deg;
-    LG_ASSIGN(result.eyewear, MakeEyewear(fit, result.prescription, track.pupil_right,
-                                          track.pupil_left, request.eyewear));
     occluder = BuildHeadOccluder(track.face, fit.ears);
+    result.eyewear = std::move(fitted.eyewear);
   }
   const auto prepare = [&] {
     const Timer timer(seconds.prepare);

@@ -24,7 +24,8 @@ struct TryonRequest {
   std::string report;       // empty: none
   std::string model_dir;
   FrameRange frames;
-  double focal_px = 0;  // for tracking; 0: estimated
+  std::optional<double> pd_mm;  // in place of the prescription's
+  double focal_px = 0;          // for tracking; 0: estimated
   int stills = 0;
   bool stills_beside_input = false;
   CompositorOptions compositor;

@@ -1,0 +1,30 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "apps/rx_file.h"
+
+#include <fmt/format.h>
+
+#include "base/atomic_file.h"
+#include "optics/fhir.h"
+
+namespace lorgnette {
+
+Result<Prescription> ReadRxFile(const std::string& path, std::optional<double> pd_mm) {
+  if (pd_mm && !(*pd_mm >= kMinPd_mm && *pd_mm <= kMaxPd_mm)) {
+    return UsageError(fmt::format("--pd: got {}, want {}..{}", *pd_mm, kMinPd_mm, kMaxPd_mm));
+  }
+  LG_ASSIGN(const std::string text, ReadFile(path));
+  Prescription rx;
+  if (LooksLikeFhir(text)) {
+    LG_ASSIGN(const FhirPrescription fhir, ParseFhir(text, path));
+    if (!fhir.has_pd && !pd_mm) {
+      return UsageError(path + ": FHIR says no pupillary distance, want --pd");
+    }
+    rx = fhir.rx;
+  } else {
+    LG_ASSIGN(rx, ParsePrescription(text, path));
+  }
+  if (pd_mm) rx.pd_right_mm = rx.pd_left_mm = *pd_mm / 2;
+  return rx;
+}
+
+}  // namespace lorgnette
