@@ -70,7 +70,7 @@ Error NoSag(const char* face, double curvature, double index, double rim_mm) {
                   "to {:.0f} mm across, a higher index or {}",
                   face, (face[0] == 'f' ? 1 : -1) * 1000 * (index - 1) * curvature, index, reach,
                   rim_mm, std::floor(2 * reach),
-                  face[0] == 'f' ? "a flatter base curve" : "a steeper base curve"),
+                  face[0] == 'f' || curvature > 0 ? "a flatter base curve" : "a steeper base curve"),
       ErrorKind::kFailure};
 }
 
