@@ -65,12 +65,13 @@ Status CheckOrder(const LensOrder& order) {
 Error NoSag(const char* face, double curvature, double index, double rim_mm) {
   const double reach = 1 / std::abs(curvature);
   return Error{
-      fmt::format("lens: the {} surface of {:+.2f} D at index {} has no real sag beyond {:.1f} mm "
-                  "from the optical centre and the outline reaches {:.1f} mm; possible: a lens up "
-                  "to {:.0f} mm across, a higher index or {}",
-                  face, (face[0] == 'f' ? 1 : -1) * 1000 * (index - 1) * curvature, index, reach,
-                  rim_mm, std::floor(2 * reach),
-                  face[0] == 'f' || curvature > 0 ? "a flatter base curve" : "a steeper base curve"),
+      fmt::format(
+          "lens: the {} surface of {:+.2f} D at index {} has no real sag beyond {:.1f} mm "
+          "from the optical centre and the outline reaches {:.1f} mm; possible: a lens up "
+          "to {:.0f} mm across, a higher index or {}",
+          face, (face[0] == 'f' ? 1 : -1) * 1000 * (index - 1) * curvature, index, reach, rim_mm,
+          std::floor(2 * reach),
+          face[0] == 'f' || curvature > 0 ? "a flatter base curve" : "a steeper base curve"),
       ErrorKind::kFailure};
 }
 
