@@ -12,12 +12,38 @@ set(CMAKE_RUNTIME_OUTPUT_DIRECTORY "${PROJECT_BINARY_DIR}")
 find_program(CCACHE_PROGRAM ccache)
 if(CCACHE_PROGRAM AND NOT CMAKE_CXX_COMPILER_LAUNCHER)
   set(CMAKE_CXX_COMPILER_LAUNCHER "${CCACHE_PROGRAM}")
+  if(LORGNETTE_PCH)
+    # Paths below the root count as relative, so that a fresh clone elsewhere finds the same objects;
+    # the looseness is what ccache asks for precompiled headers.
+    list(PREPEND CMAKE_CXX_COMPILER_LAUNCHER
+         "${CMAKE_COMMAND}" -E env "CCACHE_BASEDIR=${PROJECT_SOURCE_DIR}" CCACHE_NOHASHDIR=1
+         CCACHE_SLOPPINESS=pch_defines,time_macros)
+  endif()
 endif()
 
 add_library(lorgnette_options INTERFACE)
 target_compile_options(lorgnette_options INTERFACE -Wall -Wextra -Wshadow -Wnon-virtual-dtor
                                                   -Woverloaded-virtual -Werror)
 target_include_directories(lorgnette_options INTERFACE "${PROJECT_SOURCE_DIR}")
+
+# Headers that most sources read, compiled once: for the libraries and for the tests. A source names
+# its includes all the same, and scripts/check compiles it without.
+if(LORGNETTE_PCH)
+  find_package(Eigen3 REQUIRED)
+  find_package(fmt REQUIRED)
+  file(WRITE "${PROJECT_BINARY_DIR}/precompiled.cc" "")
+  foreach(kind library tests)
+    add_library(lorgnette_pch_${kind} OBJECT "${PROJECT_BINARY_DIR}/precompiled.cc")
+    target_link_libraries(lorgnette_pch_${kind} PRIVATE Eigen3::Eigen fmt::fmt lorgnette_options)
+    target_precompile_headers(lorgnette_pch_${kind} PRIVATE <algorithm> <cmath> <functional>
+                              <memory> <optional> <string> <vector> <Eigen/Geometry>
+                              <fmt/format.h> <tl/expected.hpp>)
+  endforeach()
+  if(LORGNETTE_TESTS)
+    target_link_libraries(lorgnette_pch_tests PRIVATE GTest::gmock)
+    target_precompile_headers(lorgnette_pch_tests PRIVATE <gmock/gmock.h> <gtest/gtest.h>)
+  endif()
+endif()
 
 # lorgnette_module(NAME [PUBLIC lib...] [PRIVATE lib...])
 #   library lorgnette_NAME          of NAME/*.cc
@@ -30,6 +56,9 @@ function(lorgnette_module name)
   target_link_libraries(lorgnette_${name} PUBLIC ${ARG_PUBLIC} PRIVATE ${ARG_PRIVATE}
                                                                        lorgnette_options)
   target_include_directories(lorgnette_${name} PUBLIC "${PROJECT_SOURCE_DIR}")
+  if(LORGNETTE_PCH)
+    target_precompile_headers(lorgnette_${name} REUSE_FROM lorgnette_pch_library)
+  endif()
 
   file(GLOB test_sources CONFIGURE_DEPENDS "${PROJECT_SOURCE_DIR}/tests/${name}/*.cc")
   if(LORGNETTE_TESTS AND test_sources)
@@ -38,6 +67,9 @@ function(lorgnette_module name)
                                                 GTest::gmock GTest::gtest_main)
     target_compile_definitions(${name}_tests PRIVATE
                                LORGNETTE_SOURCE_DIR="${PROJECT_SOURCE_DIR}")
+    if(LORGNETTE_PCH)
+      target_precompile_headers(${name}_tests REUSE_FROM lorgnette_pch_tests)
+    endif()
     if(LORGNETTE_TEST_PROGRAMS)
       add_test(NAME ${name} COMMAND ${name}_tests --gtest_brief=1)
     else()

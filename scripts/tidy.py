@@ -38,6 +38,12 @@ def closure(path, seen):
                 break
 
 
+def without_precompiled(command):
+    """The compile command without the headers that GCC precompiled, which clang cannot read."""
+    command = re.sub(r" -include \S*cmake_pch\.hxx", "", command)
+    return command.replace(" -Winvalid-pch", "")
+
+
 def key(entry, path, version):
     seen = {}
     closure(path, seen)
@@ -61,6 +67,12 @@ def main():
     build, only = sys.argv[1], set(sys.argv[2:])
     with open(os.path.join(build, "compile_commands.json"), encoding="utf-8") as file:
         entries = json.load(file)
+    for entry in entries:
+        entry["command"] = without_precompiled(entry["command"])
+    database = os.path.join(build, "tidy")
+    os.makedirs(database, exist_ok=True)
+    with open(os.path.join(database, "compile_commands.json"), "w", encoding="utf-8") as file:
+        json.dump(entries, file)
     version = subprocess.run(["clang-tidy", "--version"], capture_output=True, check=True).stdout
     todo, clean = [], 0
     for entry in entries:
@@ -75,7 +87,7 @@ def main():
 
     def tidy(job):
         path, mark = job
-        run = subprocess.run(["clang-tidy", "-p", build, "--quiet", os.path.join(ROOT, path)],
+        run = subprocess.run(["clang-tidy", "-p", database, "--quiet", os.path.join(ROOT, path)],
                              capture_output=True, text=True, check=False)
         if run.returncode == 0:
             with open(mark, "w", encoding="utf-8"):
