@@ -37,8 +37,8 @@ test("an impossible lens says what would be possible and leaves the slot's lens"
 
 // Where a camera on the axis, 600 mm away, sees the face through one row of the lens.
 function viewRow(slot) {
-  const at = optics._malloc(88);
-  optics.HEAPF64.set([600, 0, 0, -5, -1e-6, 5, 1e-6, 16, 0, 44, 0], at / 8);
+  const at = optics._malloc(96);
+  optics.HEAPF64.set([600, 0, 0, -5, -1e-6, 5, 1e-6, 16, 0, 44, 0, 0], at / 8);
   const out = optics._lg_view(slot, at, 5, 1);
   optics._free(at);
   return [...optics.HEAPF32.slice(out / 4, out / 4 + 20)];
@@ -93,4 +93,23 @@ test("an axis without a cylinder is refused by key", () => {
   const read = JSON.parse(callText(optics, "_lg_read_prescription", bad, "rx.json"));
   assert.equal(read.ok, false);
   assert.match(read.error, /rx\.json:OD\.axis/);
+});
+
+test("the power ring of a strong minus lens starts at total reflection from the front", () => {
+  // Plano front, index 1.5: the back has a radius of 50 mm. A camera's ray at height y, straight on,
+  // is thrown back at twice the slope a, sin a = y / 50, and reaches the edge's wall in full
+  // (but for one reflection of 4 per cent) once sin 2a exceeds 1 / 1.5.
+  const sheet = design(0, { sphere: -10, medium: { index_d: 1.5 }, base_curve_D: 0,
+    center_thickness_mm: 2, diameter_mm: 56 });
+  assert.ok(sheet.ok, sheet.error);
+  const start = 50 * Math.sin(Math.asin(1 / 1.5) / 2);
+  const n = 2800;
+  const at = optics._malloc(96);
+  optics.HEAPF64.set([1e6, 0, 0, 0, -1e-6, 28, 1e-6, 16, 0, 200, 0, 1], at / 8);
+  optics._lg_view(0, at, n, 1);
+  optics._free(at);
+  const rings = optics.HEAPF32.slice(optics._lg_rings() / 4, optics._lg_rings() / 4 + n);
+  const first = rings.findIndex((share) => share > 0.03);
+  // Two pixels of 0.01 mm.
+  assert.ok(Math.abs((first + 0.5) * 0.01 - start) < 0.02, `${first / 100} against ${start}`);
 });

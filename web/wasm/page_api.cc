@@ -236,7 +236,7 @@ const float* lg_view(int slot, const PageView* view, int w, int h) {
       const Vector2d face = FacePoint(trace.exit, lens->center_thickness_mm, *view);
       pixel[1] = float(face.x());
       pixel[2] = float(face.y());
-      *ring = float(RingShare(slot, trace, ray.direction));
+      if (view->rings != 0) *ring = float(RingShare(slot, trace, ray.direction));
       pixel[3] = float(Transmittance(trace, ray.direction, lens->medium.index_d));
     }
   }

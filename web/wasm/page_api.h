@@ -61,11 +61,13 @@ LG_PAGE_API const double* lg_fan(int slot, double meridian_deg, double half_mm, 
 // and the share of light that both surfaces let through. 4 w h numbers.
 struct PageView {
   double camera_mm, cx, cy, x0, y0, x1, y1, depth_mm, face_x_mm, flat_mm, curve;
+  double rings;  // not 0: lg_rings is wanted besides
 };
 LG_PAGE_API const float* lg_view(int slot, const PageView* view, int w, int h);
 
-// Beside the last lg_view, the power rings of its w x h pixels: the share of light with which the
-// cut edge's wall shows at each after reflections inside the bare lens. w h numbers.
+// Beside the last lg_view that asked for them, the power rings of its w x h pixels: the share of
+// light with which the cut edge's wall shows at each after reflections inside the bare lens. w h
+// numbers.
 LG_PAGE_API const float* lg_rings();
 
 // What the turning eye meets over the lens: an n x m grid (rows downwards) of gazes from a centre

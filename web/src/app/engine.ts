@@ -116,6 +116,7 @@ export interface View {
   face_x_mm: number;
   flat_mm: number;
   curve: number;
+  rings: boolean;
 }
 
 export interface FanRay {
@@ -219,7 +220,7 @@ export class Engine {
   view(slot: number, view: View, width: number, height: number): Float32Array {
     const fields = [
       view.camera_mm, view.cx, view.cy, view.x0, view.y0, view.x1, view.y1,
-      view.depth_mm, view.face_x_mm, view.flat_mm, view.curve,
+      view.depth_mm, view.face_x_mm, view.flat_mm, view.curve, Number(view.rings),
     ];
     const at = this.module._malloc(8 * fields.length);
     this.module.HEAPF64.set(fields, at / 8);
@@ -228,7 +229,7 @@ export class Engine {
     return this.module.HEAPF32.slice(out / 4, out / 4 + 4 * width * height);
   }
 
-  // The power rings beside the last view of this many pixels: share of light from the edge's wall.
+  // The power rings beside the last view that asked for them, of this many pixels: share of light from the edge's wall.
   rings(count: number): Float32Array {
     const at = this.module._lg_rings() / 4;
     return this.module.HEAPF32.slice(at, at + count);

@@ -14,14 +14,17 @@ import { t, type TextKey } from "../app/texts";
 import { h, setText } from "../ui/dom";
 import { photoMarks, type PhotoMarks } from "./photo";
 
-const GRID_PX = 3; // one exact ray every so many pixels; linear between them
+// One exact ray every so many pixels, linear between them; the rings' sharp borders want it finer.
+const GRID_PX = 3;
+const GRID_WITH_RINGS_PX = 1.5;
 const IRIS_SAMPLES = 241;
 const EDGE_LIGHT = 0.8; // of a ground edge in the room's light, white being 1
+const RINGS_SHOWN = 4; // times as bright, and said so: real ones are faint but before a lamp
 
 // +x of the lens frame is the wearer's right: the viewer's left.
 const side = (eye: EyeName): 1 | -1 => (eye === "right" ? 1 : -1);
 
-function viewOf(order: Order, eye: EyeName): Omit<View, "x0" | "x1" | "y0" | "y1"> {
+function viewOf(order: Order, eye: EyeName): Omit<View, "x0" | "x1" | "y0" | "y1" | "rings"> {
   const pd = order[eye].pd;
   return {
     camera_mm: order.camera,
@@ -53,7 +56,7 @@ export function measuredIris(engine: Engine, order: Order, sheet: Sheet, eye: Ey
   const pd = order[eye].pd;
   const reach = 4 * IRIS_RADIUS_MM;
   const map = engine.view(SLOT[eye],
-    { ...viewOf(order, eye), x0: -reach, x1: reach, y0: -1e-6, y1: 1e-6 }, IRIS_SAMPLES, 1);
+    { ...viewOf(order, eye), x0: -reach, x1: reach, y0: -1e-6, y1: 1e-6, rings: false }, IRIS_SAMPLES, 1);
   const at = (i: number): number => -reach + (2 * reach * (i + 0.5)) / IRIS_SAMPLES;
   const edge = (target: number): number | null => {
     for (let i = 0; i + 1 < IRIS_SAMPLES; ++i) {
@@ -79,22 +82,25 @@ function renderLens(
   source: ImageData,
   box: { px: number; py: number; w: number; h: number },
   out: ImageData,
+  withRings: boolean,
 ): void {
+  const grid = withRings ? GRID_WITH_RINGS_PX : GRID_PX;
   const pd = order[eye].pd;
-  const gw = Math.ceil(box.w / GRID_PX) + 1;
-  const gh = Math.ceil(box.h / GRID_PX) + 1;
-  // Grid points sit at multiples of GRID_PX; the optics counts the middles of its cells.
+  const gw = Math.ceil(box.w / grid) + 1;
+  const gh = Math.ceil(box.h / grid) + 1;
+  // Grid points sit at multiples of `grid`; the optics counts the middles of its cells.
   const toLens = (px: number): number => -(WINDOW.left + px / PX_PER_MM) - side(eye) * pd;
-  const half = GRID_PX / 2;
+  const half = grid / 2;
   const view: View = {
     ...viewOf(order, eye),
     x0: toLens(box.px - half),
-    x1: toLens(box.px + gw * GRID_PX - half),
+    x1: toLens(box.px + gw * grid - half),
     y1: WINDOW.top - (box.py - half) / PX_PER_MM,
-    y0: WINDOW.top - (box.py + gh * GRID_PX - half) / PX_PER_MM,
+    y0: WINDOW.top - (box.py + gh * grid - half) / PX_PER_MM,
+    rings: withRings,
   };
   const map = engine.view(SLOT[eye], view, gw, gh);
-  const rings = engine.rings(gw * gh);
+  const rings = withRings ? engine.rings(gw * gh) : new Float32Array(0);
   // From points of the face to pixels of the source; the light kept stays as it is.
   for (let k = 0; k < gw * gh; ++k) {
     if (map[4 * k] !== 0) continue;
@@ -108,17 +114,17 @@ function renderLens(
   const filter = sheet.luminous_transmittance / bare;
   // A coat takes from the rings what it takes from the reflections of a bare lens.
   const untinted = sheet.luminous_transmittance / (1 - order.tint / 100);
-  const ringLight = (EDGE_LIGHT * Math.max(0, 1 - untinted)) /
+  const ringLight = (RINGS_SHOWN * EDGE_LIGHT * Math.max(0, 1 - untinted)) /
     (1 - (2 * sheet.index_d) / (sheet.index_d ** 2 + 1));
   const from = source.data;
   const to = out.data;
   const { width, height } = source;
   for (let j = 0; j < box.h; ++j) {
-    const gj = Math.floor((j + 0.5) / GRID_PX);
-    const fj = (j + 0.5) / GRID_PX - gj;
+    const gj = Math.floor((j + 0.5) / grid);
+    const fj = (j + 0.5) / grid - gj;
     for (let i = 0; i < box.w; ++i) {
-      const gi = Math.floor((i + 0.5) / GRID_PX);
-      const fi = (i + 0.5) / GRID_PX - gi;
+      const gi = Math.floor((i + 0.5) / grid);
+      const fi = (i + 0.5) / grid - gi;
       const k = 4 * (gj * gw + gi);
       const kd = k + 4 * gw;
       const o = 4 * (j * box.w + i);
@@ -150,7 +156,7 @@ function renderLens(
         to[o + c] = gain * (top + fy * (low - top));
       }
       const q = gj * gw + gi;
-      const ring = ringLight *
+      const ring = !withRings ? 0 : ringLight *
         (w00 * rings[q] + w10 * rings[q + 1] + w01 * rings[q + gw] + w11 * rings[q + gw + 1]);
       if (ring > 0.002) {
         for (let c = 0; c < 3; ++c) {
@@ -173,6 +179,7 @@ export function eyesSection(store: Store, wanted: () => boolean): HTMLElement {
   const [, base] = canvasOf(WIDTH, HEIGHT);
   const readout = h("table", { class: "iris" });
   const bare = h("input", { type: "checkbox", onchange: () => draw() });
+  const rings = h("input", { type: "checkbox", onchange: () => draw() });
   const noFrame = h("input", { type: "checkbox", onchange: () => draw() });
   let photo: PhotoMarks | null = null;
   let baseKey = "";
@@ -187,7 +194,8 @@ export function eyesSection(store: Store, wanted: () => boolean): HTMLElement {
     h("div", { class: "card-head" }, h("h2", {}, t("eyes.title")),
       h("div", { class: "checks" },
         h("label", {}, bare, t("eyes.bare")),
-        h("label", {}, noFrame, t("eyes.noFrame")))),
+        h("label", {}, noFrame, t("eyes.noFrame")),
+        h("label", {}, rings, t("eyes.rings")))),
     canvas, photos, readout, h("p", { class: "hint" }, t("eyes.hint")));
 
   const cell = new Map<string, HTMLElement>();
@@ -206,12 +214,12 @@ export function eyesSection(store: Store, wanted: () => boolean): HTMLElement {
   function draw(): void {
     const { order, sheet } = store.lenses;
     const pupils = pupilsOf(order, sheet);
-    const iris = IRIS_RADIUS_MM * bareScale(order, sheet.right, order.right.pd);
-    const key = JSON.stringify([pupils, iris, photo?.version ?? 0]);
+    const irisRadius = IRIS_RADIUS_MM * bareScale(order, sheet.right, order.right.pd);
+    const key = JSON.stringify([pupils, irisRadius, photo?.version ?? 0]);
     if (key !== baseKey || !source) {
       baseKey = key;
       if (photo) drawPhoto(base, photo.image, photo.marks, pupils);
-      else drawFace(base, pupils, iris);
+      else drawFace(base, pupils, irisRadius);
       source = base.getImageData(0, 0, WIDTH, HEIGHT);
     }
     ctx.putImageData(source, 0, 0);
@@ -222,19 +230,21 @@ export function eyesSection(store: Store, wanted: () => boolean): HTMLElement {
       EYES.forEach((eye, i) => paintLens(eye, outlines[i]));
       if (!noFrame.checked) drawFrame(ctx, outlines, "#23262b");
     }
-    canvas.setAttribute("aria-label", t("eyes.alt", {
-      right: fixed(100 * (measuredIris(store.engine, order, sheet.right, "right") ?? 1), 1),
-      left: fixed(100 * (measuredIris(store.engine, order, sheet.left, "left") ?? 1), 1),
-    }));
+    const iris = { right: 1, left: 1 };
     for (const eye of EYES) {
       const s = sheet[eye];
       const measured = measuredIris(store.engine, order, s, eye);
+      iris[eye] = measured ?? 1;
       setText(cell.get(`measured-${eye}`)!, measured === null ? "–" : fixed(measured, 4));
       setText(cell.get(`exact-${eye}`)!,
         s.observer_magnification_exact === null ? "–" : fixed(s.observer_magnification_exact, 4));
       setText(cell.get(`paraxial-${eye}`)!, fixed(s.observer_magnification_paraxial, 4));
       setText(cell.get(`thin-${eye}`)!, fixed(s.observer_magnification_thin, 4));
     }
+    canvas.setAttribute("aria-label", t("eyes.alt", {
+      right: fixed(100 * iris.right, 1),
+      left: fixed(100 * iris.left, 1),
+    }));
   }
 
   function paintLens(eye: EyeName, outline: [number, number][]): void {
@@ -246,7 +256,7 @@ export function eyesSection(store: Store, wanted: () => boolean): HTMLElement {
     box.h = Math.ceil(Math.max(...py)) - box.py;
     const [lens, lensContext] = canvasOf(box.w, box.h);
     const image = lensContext.createImageData(box.w, box.h);
-    renderLens(store.engine, order, sheet[eye], eye, source!, box, image);
+    renderLens(store.engine, order, sheet[eye], eye, source!, box, image, rings.checked);
     lensContext.putImageData(image, 0, 0);
     ctx.save();
     ctx.beginPath();

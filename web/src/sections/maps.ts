@@ -19,6 +19,7 @@ const ROWS = 41;
 const LINE_STEPS = 40;
 const LINE_MAX_DEG = 40;
 const PROGRESSIVE_GRID = 61;
+const COLOURED = 0.97; // share of the lens whose values the colours span
 const PROGRESSIVE_HALF_MM = 28;
 
 const KINDS = ["power", "astigmatism", "prism", "distortion", "progPower", "progAstigmatism"] as const;
@@ -161,21 +162,21 @@ export function mapsSection(store: Store, wanted: () => boolean): HTMLElement {
     const { n, m, values } = f.grid;
     const at = (i: number, j: number): [number, number] => [
       f.halfX * ((2 * i) / (n - 1) - 1), f.halfY * ((2 * j) / (m - 1) - 1)];
-    let low = Number.POSITIVE_INFINITY;
-    let high = Number.NEGATIVE_INFINITY;
-    values.forEach((v, k) => {
-      if (Number.isNaN(v) || !inside(...at(k % n, Math.floor(k / n)), f.outline)) return;
-      low = Math.min(low, v);
-      high = Math.max(high, v);
-    });
+    const shown = [...values].filter((v, k) =>
+      !Number.isNaN(v) && inside(...at(k % n, Math.floor(k / n)), f.outline)).sort((a, b) => a - b);
+    const low = shown[0] ?? 0;
+    const high = shown[shown.length - 1] ?? 0;
+    // Colours and lines leave out the last of the steep corners of a progressive.
+    const share = (q: number): number => shown[Math.round(q * (shown.length - 1))] ?? 0;
+    const [bottom, top] = [share(1 - COLOURED), share(COLOURED)];
     const centred = f.signed && kind !== "progPower";
-    const reach = Math.max(Math.abs(low), Math.abs(high), 0.05);
+    const reach = Math.max(Math.abs(bottom), Math.abs(top), 0.05);
     const colour = centred
       ? (v: number) => aroundZero(0.5 + v / (2 * reach))
       : kind === "progPower"
-        ? (v: number) => rising((v - low) / Math.max(0.05, high - low))
-        : (v: number) => rising(v / Math.max(high, 0.25));
-    const levels = high - low < 0.01 ? [] : roundLevels(low, high);
+        ? (v: number) => rising((v - bottom) / Math.max(0.05, top - bottom))
+        : (v: number) => rising(v / Math.max(top, 0.25));
+    const levels = top - bottom < 0.01 ? [] : roundLevels(bottom, top);
     const clip = uniqueId("clip");
     const dx = f.halfX / (n - 1);
     const dy = f.halfY / (m - 1);
@@ -210,10 +211,10 @@ export function mapsSection(store: Store, wanted: () => boolean): HTMLElement {
     setText(summary, title);
     drawing.setAttribute("aria-label", title);
     legend.replaceChildren(
-      h("span", {}, show(f, centred ? -reach : kind === "progPower" ? low : 0)),
+      h("span", {}, show(f, centred ? -reach : kind === "progPower" ? bottom : 0)),
       h("span", { class: "legend-bar", style: `background:linear-gradient(to right,${Array.from(
         { length: 9 }, (_, i) => `rgb(${(centred ? aroundZero : rising)(i / 8).map(Math.round).join(" ")})`).join(",")})` }),
-      h("span", {}, show(f, centred ? reach : kind === "progPower" ? high : Math.max(high, 0.25))));
+      h("span", {}, show(f, centred ? reach : kind === "progPower" ? top : Math.max(top, 0.25))));
     setText(readout, t("maps.point"));
   }
 
