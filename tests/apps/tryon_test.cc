@@ -2,6 +2,7 @@
 // lorgnette tryon and track, on a photograph where one is there, and on inputs that are wrong.
 #include <sys/resource.h>
 
+#include <cmath>
 #include <csignal>
 #include <limits>
 
@@ -109,6 +110,9 @@ TEST_F(TryonTest, OptionsOutOfRangeAreNamed) {
                 {"blank.png"});
 }
 
+// Baking the shadow takes most of the time of one picture.
+const std::vector<std::string> kQuick = {"--samples", "1", "--no-shadow"};
+
 // A portrait through the whole program.
 class PortraitTest : public TryonTest {
  protected:
@@ -121,8 +125,9 @@ class PortraitTest : public TryonTest {
 };
 
 TEST_F(PortraitTest, GetsGlassesAndAReport) {
-  const Ran ran = Tryon(portrait_, "on.png",
-                        {"--report", Path("report.json"), "--samples", "1", "--stills", "1"});
+  const Ran ran =
+      Tryon(portrait_, "on.png",
+            {"--report", Path("report.json"), "--samples", "1", "--stills", "1", "--no-shadow"});
   ASSERT_EQ(ran.code, kExitOk) << ran.err;
   EXPECT_EQ(FilesHere(), (std::vector<std::string>{"on.png", "on_still_0001.png", "report.json"}));
   const auto before = ReadPicture(portrait_), after = ReadPicture(Path("on.png"));
@@ -168,10 +173,19 @@ TEST_F(PortraitTest, GetsGlassesAndAReport) {
 TEST_F(PortraitTest, TrackFileServesInPlaceOfTracking) {
   const Ran tracked = Run({"track", "--video", portrait_, "--rx", kTable1, "-o", Path("t.json")});
   ASSERT_EQ(tracked.code, kExitOk) << tracked.err;
-  ASSERT_EQ(Tryon(portrait_, "a.png", {"--samples", "1"}).code, kExitOk);
-  const Ran with_file = Tryon(portrait_, "b.png", {"--samples", "1", "--track", Path("t.json")});
+  ASSERT_EQ(Tryon(portrait_, "a.png", kQuick).code, kExitOk);
+  std::vector<std::string> with_track = kQuick;
+  with_track.insert(with_track.end(), {"--track", Path("t.json")});
+  const Ran with_file = Tryon(portrait_, "b.png", with_track);
   ASSERT_EQ(with_file.code, kExitOk) << with_file.err;
-  EXPECT_EQ(*ReadFile(Path("a.png")), *ReadFile(Path("b.png")));
+  const auto a = ReadPicture(Path("a.png")), b = ReadPicture(Path("b.png"));
+  ASSERT_TRUE(a && b);
+  double difference = 0;
+  for (std::size_t i = 0; i < a->data.size(); ++i) {
+    difference += std::abs(a->data[i] - b->data[i]);
+  }
+  // The file rounds its numbers: single samples at the rims may fall on the other side.
+  EXPECT_LT(difference / double(a->data.size()), 0.05);
   // Of another PD: refused, since the scale would be wrong.
   Write("rx.json", R"({"OD": {"sphere": 0}, "OS": {"sphere": 0}, "PD": 58})");
   const Ran other = Run({"tryon", "--video", portrait_, "--rx", Path("rx.json"), "--frame", "panto",
@@ -187,8 +201,8 @@ TEST_F(PortraitTest, FullDiskIsASentenceAndLeavesNothing) {
   const rlimit small{200, before.rlim_max};
   void (*handler)(int) = std::signal(SIGXFSZ, SIG_IGN);
   setrlimit(RLIMIT_FSIZE, &small);
-  const Ran image = Tryon(portrait_, "on.png", {"--samples", "1"});
-  const Ran video = Tryon(portrait_, "on.mp4", {"--samples", "1"});
+  const Ran image = Tryon(portrait_, "on.png", kQuick);
+  const Ran video = Tryon(portrait_, "on.mp4", kQuick);
   setrlimit(RLIMIT_FSIZE, &before);
   std::signal(SIGXFSZ, handler);
   ExpectRefused(image, kExitFailure, "on.png: cannot be written: File too large", {});
