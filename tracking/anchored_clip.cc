@@ -17,8 +17,14 @@ constexpr double kViewReach = RadiansFromDegrees(12);  // weight of a view falls
 constexpr std::size_t kMostViews = 12;
 constexpr std::size_t kViewsPerFrame = 2;
 constexpr std::size_t kKeyFrames = 24;
-constexpr double kSightingSigma = 0.15;  // crop px
-constexpr double kGoodWeight = 10;       // of the inliers of a pose that can be relied on
+// Depth and focal length show in how the face changes as it turns. A face that hardly turns changes
+// more by its expressions: then both keep near to what is usual.
+constexpr double kFullParallax = RadiansFromDegrees(20);
+constexpr double kDepthSigmaMm = 12, kLeastDepthSigmaMm = 1.5;
+constexpr double kFirstSigma = 0.3, kLeastSigma = 0.15;  // of a sighting, crop px
+// A key frame's errors are like those of others: they count as if this squared were one.
+constexpr double kAlikeFrames = 4;
+constexpr double kGoodWeight = 10;  // of the inliers of a pose that can be relied on
 
 struct Sighting {
   std::size_t view, anchor;
@@ -62,6 +68,14 @@ class Anchorer {
   std::vector<Sighting> Match(std::size_t f, Eigen::Isometry3d* pose) const;
   PoseFit Fit(const std::vector<Sighting>& sightings, const Eigen::Isometry3d& guess,
               double scale_px) const;
+  // Between the first view and any frame.
+  double GreatestTurn() const {
+    double turn = 0;
+    for (std::size_t f = 0; f < in_.frames.size(); ++f) {
+      if (Seen(f)) turn = std::max(turn, AngleBetween(Landmark(views_[0].frame), Landmark(f)));
+    }
+    return turn;
+  }
   void KeepSize();
   AnchorView ViewOf(std::size_t f, const Eigen::Isometry3d& pose) const;
   std::vector<std::optional<PoseFit>> Chain(const std::vector<std::optional<PoseFit>>& poses,
@@ -225,9 +239,22 @@ double Anchorer::Bundle(double focal_log_sigma) {
     }
   }
   BundleOptions options;
-  options.focal_log_sigma = focal_log_sigma;
-  options.sigma_px = kSightingSigma * CropPixel(views_[0].frame);
-  const BundleReport report = FitBundle(sightings, options, camera_, poses, points);
+  const double parallax = std::min(1.0, GreatestTurn() / kFullParallax);
+  options.focal_log_sigma = parallax * focal_log_sigma;
+  options.sigma_mm = std::max(kLeastDepthSigmaMm, parallax * parallax * kDepthSigmaMm);
+  // What the rigid face leaves over (expressions, mostly) is alike in many frames: a first fit
+  // tells how much it is, the second trusts the sightings no more than that allows.
+  const double crop_px = CropPixel(views_[0].frame);
+  BundleReport report;
+  options.sigma_px = kFirstSigma * crop_px;
+  {
+    Camera camera = camera_;
+    std::vector<Eigen::Isometry3d> tried_poses = poses;
+    std::vector<BundlePoint> tried_points = points;
+    report = FitBundle(sightings, options, camera, tried_poses, tried_points);
+  }
+  options.sigma_px = std::max(kLeastSigma * crop_px, kAlikeFrames * report.rms_px);
+  report = FitBundle(sightings, options, camera_, poses, points);
   if (!report.usable) return 0;
   for (std::size_t v = 0; v < views_.size(); ++v) {
     views_[v].camera_from_head = poses[v];

@@ -18,7 +18,7 @@ constexpr std::array<double, 5> kRadiusFactors{0.88, 0.94, 1.0, 1.06, 1.12};
 constexpr double kRimShare = 0.18;  // of the radius, between the samples inside and outside
 constexpr int kRimSamples = 7;      // a side
 // Angles on the sides of the disc that lids leave free, degrees below the horizontal.
-constexpr double kRimFromDeg = -20, kRimToDeg = 45;
+constexpr double kRimFromDeg = -25, kRimToDeg = 36;
 constexpr double kMinContrast = 6;  // grey levels
 constexpr double kMostTurn = 0.6;   // radians off the line of sight
 
