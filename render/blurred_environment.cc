@@ -1,4 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
+#include <tbb/parallel_for.h>
+
 #include <algorithm>
 #include <cmath>
 
@@ -8,8 +10,10 @@
 namespace lorgnette {
 namespace {
 
-constexpr int kSide = 64;          // texels of the octahedral map, without its border
-constexpr int kSourceWidth = 256;  // the environment is first reduced to 256 x 128 at most
+constexpr int kSide = 64;  // texels of the octahedral map, without its border
+// The environment is first reduced to this width; wide lobes need no more than half.
+constexpr int kSourceWidth = 256;
+constexpr double kWideExponent = 200;
 
 // Octahedral coordinates in [-1, 1] of a direction, and back.
 Eigen::Vector2f Fold(const Eigen::Vector3f& d) {
@@ -50,9 +54,9 @@ struct Source {
   std::vector<Eigen::Vector2f> columns;  // -sin lon, cos lon
 };
 
-Source Reduce(const Environment& environment) {
+Source Reduce(const Environment& environment, int width) {
   const ImageRgbF& in = environment.map();
-  const int factor = std::max(1, in.width / kSourceWidth);
+  const int factor = std::max(1, in.width / width);
   Source out;
   out.map = ImageRgbF((in.width + factor - 1) / factor, (in.height + factor - 1) / factor);
   for (int y = 0; y < out.map.height; ++y) {
@@ -106,20 +110,21 @@ Eigen::Vector3f Gather(const Source& source, const Eigen::Vector3f& d, float exp
 
 BlurredEnvironment::BlurredEnvironment(const Environment& environment, double exponent)
     : map_(kSide + 2, kSide + 2) {
-  const Source source = Reduce(environment);
+  const Source source =
+      Reduce(environment, exponent < kWideExponent ? kSourceWidth / 2 : kSourceWidth);
   // Beyond this angle the kernel is below 1/1000 of its peak; at least three source texels wide,
   // so that a kernel finer than the map still finds one.
   const double cut = std::max(1 - std::pow(1e-3, 1 / std::max(exponent, 1e-3)),
                               1 - std::cos(3 * kPi / source.map.height));
   const float cos_cut = float(std::max(1 - cut, 0.0));
-  for (int y = 0; y < kSide + 2; ++y) {
+  tbb::parallel_for(0, kSide + 2, [&](int y) {
     for (int x = 0; x < kSide + 2; ++x) {
       const Eigen::Vector3f d =
           Unfold(float(2 * (x - 0.5) / kSide - 1), float(2 * (y - 0.5) / kSide - 1));
       const Eigen::Vector3f mean = Gather(source, d, float(exponent), cos_cut);
       std::copy(mean.data(), mean.data() + 3, map_.at(x, y));
     }
-  }
+  });
 }
 
 BlurredEnvironment BlurredEnvironment::ForCells(const Environment& environment, int cells) {

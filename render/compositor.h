@@ -33,12 +33,12 @@ struct CompositorOptions {
   bool refraction = true;
   bool reflection = true;  // Fresnel: front and back surface, internal bounces
   ShadowMode shadow = ShadowMode::kBaked;
-  bool shadow_sees_face = true;  // S_noGlasses with the face as an occluder (section V-B) or not
-  int shadow_rays = 160;         // a pixel in paper mode (4 x 40 strata)
-  int shadow_directions = 1024;  // of the sphere, baked; a multiple of 16
-  double shadow_spacing_mm = 1;  // between baked points where frame and skin are close
-  int samples_per_side = 2;      // 2: the paper's 2x2 samples a pixel
-  bool adaptive = false;         // one sample where nothing changes
+  bool shadow_sees_face = true;    // S_noGlasses with the face as an occluder (section V-B) or not
+  int shadow_rays = 160;           // a pixel in paper mode (4 x 40 strata)
+  int shadow_directions = 1024;    // of the sphere, baked; a multiple of 16
+  double shadow_spacing_mm = 1.5;  // between baked points where frame and skin are close
+  int samples_per_side = 2;        // 2: the paper's 2x2 samples a pixel
+  bool adaptive = false;           // one sample where nothing changes
   int max_internal_bounces = 4;
   // A branch of the ray tree that carries less of its pixel is not followed: the third reflection
   // of uncoated glass carries 0.003.

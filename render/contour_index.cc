@@ -11,6 +11,7 @@ namespace lorgnette {
 namespace {
 
 constexpr int kCellsAcross = 96;  // along the longer side
+constexpr int kBorderCells = 12;
 
 double Cross(const Eigen::Vector2d& a, const Eigen::Vector2d& b) {
   return a.x() * b.y() - a.y() * b.x();
@@ -48,20 +49,21 @@ ContourIndex::ContourIndex(std::vector<Eigen::Vector2d> polygon) : polygon_(std:
   const Eigen::Vector2d size = high_ - low_;
   cell_ = std::max(size.maxCoeff() / kCellsAcross, 1e-9);
   half_diagonal_ = cell_ * std::sqrt(0.5);
-  columns_ = std::max(1, int(std::ceil(size.x() / cell_)));
-  rows_ = std::max(1, int(std::ceil(size.y() / cell_)));
+  grid_low_ = low_ - kBorderCells * cell_ * Eigen::Vector2d::Ones();
+  columns_ = int(std::ceil(size.x() / cell_)) + 2 * kBorderCells;
+  rows_ = int(std::ceil(size.y() / cell_)) + 2 * kBorderCells;
   row_edges_.resize(std::size_t(rows_));
   for (std::size_t i = 0; i < n; ++i) {
     const double y0 = polygon_[i].y(), y1 = polygon_[(i + 1) % n].y();
-    const int first = std::clamp(int((std::min(y0, y1) - low_.y()) / cell_), 0, rows_ - 1);
-    const int last = std::clamp(int((std::max(y0, y1) - low_.y()) / cell_), 0, rows_ - 1);
+    const int first = std::clamp(int((std::min(y0, y1) - grid_low_.y()) / cell_), 0, rows_ - 1);
+    const int last = std::clamp(int((std::max(y0, y1) - grid_low_.y()) / cell_), 0, rows_ - 1);
     for (int row = first; row <= last; ++row) row_edges_[std::size_t(row)].push_back(int(i));
   }
 
   std::vector<float> distance;
   for (int row = 0; row < rows_; ++row) {
     for (int column = 0; column < columns_; ++column) {
-      const Eigen::Vector2d centre = low_ + cell_ * Eigen::Vector2d(column + 0.5, row + 0.5);
+      const Eigen::Vector2d centre = grid_low_ + cell_ * Eigen::Vector2d(column + 0.5, row + 0.5);
       double nearest2 = std::numeric_limits<double>::infinity();
       for (std::size_t i = 0; i < n; ++i) {
         nearest2 = std::min(nearest2,
@@ -74,14 +76,24 @@ ContourIndex::ContourIndex(std::vector<Eigen::Vector2d> polygon) : polygon_(std:
   distance_ = std::move(distance);
 }
 
+bool ContourIndex::InGrid(double x, double y) const {
+  return x >= grid_low_.x() && y >= grid_low_.y() && x < grid_low_.x() + cell_ * columns_ &&
+         y < grid_low_.y() + cell_ * rows_;
+}
+
+double ContourIndex::CentreDistance(double x, double y) const {
+  const int column = std::clamp(int((x - grid_low_.x()) / cell_), 0, columns_ - 1);
+  const int row = std::clamp(int((y - grid_low_.y()) / cell_), 0, rows_ - 1);
+  return double(distance_[std::size_t(row * columns_ + column)]);
+}
+
 bool ContourIndex::Contains(double x, double y) const {
   if (!(x >= low_.x() && x <= high_.x() && y >= low_.y() && y <= high_.y())) return false;
-  const int column = std::clamp(int((x - low_.x()) / cell_), 0, columns_ - 1);
-  const int row = std::clamp(int((y - low_.y()) / cell_), 0, rows_ - 1);
   if (!distance_.empty()) {
-    const double centre = distance_[std::size_t(row * columns_ + column)];
+    const double centre = CentreDistance(x, y);
     if (std::abs(centre) > half_diagonal_) return centre > 0;
   }
+  const int row = std::clamp(int((y - grid_low_.y()) / cell_), 0, rows_ - 1);
   bool inside = false;
   for (const int i : row_edges_[std::size_t(row)]) {
     const Eigen::Vector2d& a = polygon_[std::size_t(i)];
@@ -93,12 +105,14 @@ bool ContourIndex::Contains(double x, double y) const {
 }
 
 double ContourIndex::Clearance(double x, double y) const {
-  if (!(x >= low_.x() && x <= high_.x() && y >= low_.y() && y <= high_.y())) {
-    return -std::numeric_limits<double>::min();
-  }
-  const int column = std::clamp(int((x - low_.x()) / cell_), 0, columns_ - 1);
-  const int row = std::clamp(int((y - low_.y()) / cell_), 0, rows_ - 1);
-  return distance_[std::size_t(row * columns_ + column)] - half_diagonal_;
+  return InGrid(x, y) ? CentreDistance(x, y) - half_diagonal_ : -half_diagonal_;
+}
+
+double ContourIndex::OutsideBy(double x, double y) const {
+  if (InGrid(x, y)) return -CentreDistance(x, y) - half_diagonal_;
+  const double dx = std::max({low_.x() - x, x - high_.x(), 0.0});
+  const double dy = std::max({low_.y() - y, y - high_.y(), 0.0});
+  return std::hypot(dx, dy);
 }
 
 std::optional<ContourIndex::Crossing> ContourIndex::FirstCrossing(const Eigen::Vector2d& p,

@@ -21,9 +21,10 @@ class ContourIndex {
 
   // Exact (crossing number); false for a NaN.
   bool Contains(double x, double y) const;
-  // A lower bound of the signed distance to the boundary, positive inside, at most one grid cell
-  // too small. What is outside the bounding box gets a negative number.
+  // Lower bounds of the distance to the boundary, at most one grid cell too small: from inside
+  // (negative or 0 when that is not certain), and from outside.
   double Clearance(double x, double y) const;
+  double OutsideBy(double x, double y) const;
 
   // Where the line p + t d first crosses the boundary with t in (t_min, t_max).
   struct Crossing {
@@ -37,6 +38,12 @@ class ContourIndex {
   std::vector<Eigen::Vector2d> polygon_;
   std::vector<Eigen::Vector2d> vertex_normals_;
   Eigen::Vector2d low_{0, 0}, high_{0, 0};
+  // Signed distance at the centre of the cell that holds (x, y).
+  double CentreDistance(double x, double y) const;
+  bool InGrid(double x, double y) const;
+
+  // Cells over the bounding box and a border around it.
+  Eigen::Vector2d grid_low_{0, 0};
   int columns_ = 0, rows_ = 0;
   double cell_ = 1, half_diagonal_ = 0;
   std::vector<float> distance_;              // signed, of the cells' centres

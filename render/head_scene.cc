@@ -10,13 +10,14 @@ namespace lorgnette {
 namespace {
 
 constexpr int kLightDirections = 1024;
-constexpr int kFrameDirections = 256;
+constexpr int kFrameDirections = 128;
 // The paper's feathering: share of the way from the front to the ear.
 constexpr double kFadeStart = 0.55, kFadeEnd = 0.97;
 
 FrameSurface JoinParts(const Eyewear& eyewear, const Environment& environment) {
   FrameSurface out;
   out.frame_from_head = eyewear.head_from_frame.inverse();
+  std::vector<float> lobes;
   for (const FramePart& part : eyewear.frame.parts) {
     if (part.kind == FramePartKind::kDemoLens || part.mesh.empty()) continue;
     TriangleMesh mesh = part.mesh;
@@ -28,7 +29,12 @@ FrameSurface JoinParts(const Eyewear& eyewear, const Environment& environment) {
                            std::uint16_t(out.materials.size()));
     out.materials.push_back(part.material);
     out.fades.push_back(part.kind == FramePartKind::kTemple);
-    out.gloss.push_back(BlurredEnvironment::ForPhong(environment, part.material.shininess));
+    const auto known = std::find(lobes.begin(), lobes.end(), part.material.shininess);
+    out.gloss_of.push_back(std::uint16_t(known - lobes.begin()));
+    if (known == lobes.end()) {
+      lobes.push_back(part.material.shininess);
+      out.gloss.push_back(BlurredEnvironment::ForPhong(environment, part.material.shininess));
+    }
     Append(out.mesh, mesh);
   }
   double ear_z = 0.5 * (eyewear.frame.ear_point_right.z() + eyewear.frame.ear_point_left.z());

@@ -23,7 +23,8 @@ struct FrameSurface {
   std::vector<std::uint16_t> material_of;  // one a triangle
   std::vector<FrameMaterial> materials;    // one a part
   std::vector<bool> fades;                 // one a part: a temple
-  std::vector<BlurredEnvironment> gloss;   // one a part: the environment under its Phong lobe
+  std::vector<BlurredEnvironment> gloss;   // the environment under each Phong lobe in use
+  std::vector<std::uint16_t> gloss_of;     // one a part
   Eigen::Isometry3d frame_from_head = Eigen::Isometry3d::Identity();
   double fade_start_z = 0, fade_end_z = 0;  // frame coordinates: opaque before, gone after
 };

@@ -191,6 +191,13 @@ std::optional<double> LensSolid::FaceHeight(SolidFace face, double x, double y) 
 std::optional<SolidHit> LensSolid::Enter(const Ray& ray) const {
   const Span span = InBox(ray, low_, high_);
   if (!(span.t0 <= span.t1) || span.t1 <= kStart_mm) return std::nullopt;
+  // Most rays that cross the box beside the glass stay beside the contour all the way.
+  const double t0 = std::max(span.t0, 0.0);
+  const Eigen::Vector2d middle = (ray.origin + 0.5 * (t0 + span.t1) * ray.direction).head<2>();
+  if (contour_.OutsideBy(middle.x(), middle.y()) >
+      0.5 * (span.t1 - t0) * ray.direction.head<2>().norm()) {
+    return std::nullopt;
+  }
   // Distances are kept about the box, so that a far camera costs no digits.
   const double shift = std::max(span.t0 - 1.0, 0.0);
   const Ray near{ray.origin + shift * ray.direction, ray.direction};

@@ -53,6 +53,9 @@ BakedIrradiance BakedIrradiance::Bake(const EmbreeScene& scene,
                          [&](std::size_t first, RayPacket& packet, const float* cosine) {
                            RayPacket by_head = packet;
                            scene.Occluded16(RaySet::kFrame, packet);
+                           for (std::size_t k = 0; k < RayPacket::kSize; ++k) {
+                             by_head.valid[k] = packet.valid[k] && packet.far[k] >= 0;
+                           }
                            scene.Occluded16(RaySet::kHead, by_head);
                            for (std::size_t k = 0; k < RayPacket::kSize; ++k) {
                              if (!packet.valid[k]) continue;

@@ -164,21 +164,40 @@ void PictureView::FillFace() const {
 void PictureView::FillBackground() const {
   const int width = FilledPicture::ReducedSide(camera_.width);
   const int height = FilledPicture::ReducedSide(camera_.height);
-  std::vector<std::uint8_t> known(std::size_t(width) * std::size_t(height));
-  tbb::parallel_for(0, height, [&](int row) {
-    for (int column = 0; column < width; ++column) {
-      // A reduced pixel is background when its corners and centre are.
-      bool hit = false;
-      for (const auto& [dx, dy] :
-           {std::pair{0.5, 0.5}, {0.0, 0.0}, {1.0, 0.0}, {0.0, 1.0}, {1.0, 1.0}}) {
-        const Eigen::Vector3d d = camera_.Direction((column + dx) * FilledPicture::kStep,
-                                                    (row + dy) * FilledPicture::kStep);
+  // A reduced pixel is background when the rays at its four corners are.
+  const int corners = width + 1;
+  std::vector<std::uint8_t> hit(std::size_t(corners) * std::size_t(height + 1));
+  tbb::parallel_for(0, height + 1, [&](int row) {
+    for (int first = 0; first < corners; first += RayPacket::kSize) {
+      RayPacket packet;
+      for (int k = 0; k < RayPacket::kSize; ++k) {
+        const Eigen::Vector3d d =
+            camera_.Direction((first + k) * FilledPicture::kStep, row * FilledPicture::kStep);
         const Eigen::Vector3f head = rotation_.transpose() * d.cast<float>();
-        hit = hit || scene_.Occluded(RaySet::kHead, eye_, head, 0, background_depth_);
+        packet.valid[k] = first + k < corners;
+        packet.ox[k] = eye_.x();
+        packet.oy[k] = eye_.y();
+        packet.oz[k] = eye_.z();
+        packet.near[k] = 0;
+        packet.dx[k] = head.x();
+        packet.dy[k] = head.y();
+        packet.dz[k] = head.z();
+        packet.far[k] = background_depth_;
       }
-      known[std::size_t(row) * std::size_t(width) + std::size_t(column)] = !hit;
+      scene_.Occluded16(RaySet::kHead, packet);
+      for (int k = 0; k < RayPacket::kSize && first + k < corners; ++k) {
+        hit[std::size_t(row) * std::size_t(corners) + std::size_t(first + k)] = packet.far[k] < 0;
+      }
     }
   });
+  std::vector<std::uint8_t> known;
+  for (int row = 0; row < height; ++row) {
+    for (int column = 0; column < width; ++column) {
+      const std::uint8_t* corner =
+          hit.data() + std::size_t(row) * std::size_t(corners) + std::size_t(column);
+      known.push_back(!corner[0] && !corner[1] && !corner[corners] && !corner[corners + 1]);
+    }
+  }
   background_.emplace_back(input_, known);
 }
 

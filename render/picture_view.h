@@ -26,7 +26,7 @@ class FilledPicture {
   // known: one byte a reduced pixel, 1 where the picture shows what is wanted.
   FilledPicture(const ImageRgbF& input, const std::vector<std::uint8_t>& known);
   Eigen::Vector3f Sample(float x, float y) const;  // in pixels of the input
-  static constexpr int kStep = 4;
+  static constexpr int kStep = 8;
   static int ReducedSide(int side) { return (side + kStep - 1) / kStep; }
 
  private:

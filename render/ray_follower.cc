@@ -107,7 +107,8 @@ Eigen::Vector3f RayFollower::Frame(const SceneHit& hit, const Eigen::Vector3f& p
     const Eigen::Vector3f strength =
         material.specular + rise * (Eigen::Vector3f::Ones() - material.specular);
     colour += float(head_.options.environment_scale) *
-              strength.cwiseProduct(frame.gloss[part].Radiance(world_from_head_ * mirrored));
+              strength.cwiseProduct(
+                  frame.gloss[frame.gloss_of[part]].Radiance(world_from_head_ * mirrored));
   }
   return colour;
 }

@@ -85,10 +85,10 @@ struct Bundle {
   }
 };
 
-// Where a straight ray is inside a box; false when it misses.
+// Whether a straight ray is inside a box anywhere before `far`.
 bool MeetsBox(const Eigen::Vector3f& origin, const Eigen::Vector3f& direction,
-              const Eigen::Vector3d& low, const Eigen::Vector3d& high) {
-  float t0 = 0, t1 = kInfinity;
+              const Eigen::Vector3d& low, const Eigen::Vector3d& high, float far) {
+  float t0 = 0, t1 = far;
   for (int k = 0; k < 3; ++k) {
     const float inverse = 1 / direction[k];
     float a = (float(low[k]) - origin[k]) * inverse, b = (float(high[k]) - origin[k]) * inverse;
@@ -216,10 +216,13 @@ void TileRenderer::TraceLens(std::size_t lens, Batch& batch, std::vector<CameraS
   const Eigen::Vector3d eye_in_lens = solid.lens_from_head() * eye_;
   const float shift = float(
       std::max(0.0, eye_in_lens.norm() - std::max(solid.low().norm(), solid.high().norm()) - 10));
+  const Eigen::Vector3f origin_in_lens = eye_in_lens.cast<float>();
   batch.sample_of.clear();
   for (std::size_t i = 0; i < samples.size(); ++i) {
     const Eigen::Vector3f d = lens_from_head * batch.primary.directions[i];
-    if (MeetsBox(eye_in_lens.cast<float>(), d, solid.low(), solid.high())) {
+    const SceneHit& hit = batch.primary.hits[i];
+    if (MeetsBox(origin_in_lens, d, solid.low(), solid.high(),
+                 hit.hit() ? hit.distance : kInfinity)) {
       batch.sample_of.push_back(std::uint32_t(i));
     }
   }
