@@ -193,11 +193,7 @@ Eigen::Vector2d BoxCentre(const Polygon2& polygon) {
   return (low + high) / 2;
 }
 
-// Empty regions enclosed by the front's silhouette along z, as a point inside each and its area.
-struct Hole {
-  Eigen::Vector2d centre;
-  double area = 0;
-};
+// A mesh drawn along z into cells, and the empty regions it encloses.
 class Silhouette {
  public:
   explicit Silhouette(const TriangleMesh& mesh) {
@@ -212,16 +208,17 @@ class Silhouette {
     cells_.assign(std::size_t(width_) * std::size_t(height_), 0);
     for (const Eigen::Vector3i& t : mesh.triangles) Draw(mesh, t);
   }
-  std::vector<Hole> Holes() {
+  std::vector<SilhouetteHole> Holes() {
     Flood(0, 0);  // outside
-    std::vector<Hole> holes;
+    std::vector<SilhouetteHole> holes;
     for (int y = 0; y < height_; ++y) {
       for (int x = 0; x < width_; ++x) {
         if (cells_[Index(x, y)] == 0) holes.push_back(Flood(x, y));
       }
     }
-    std::sort(holes.begin(), holes.end(),
-              [](const Hole& a, const Hole& b) { return a.area > b.area; });
+    std::sort(holes.begin(), holes.end(), [](const SilhouetteHole& a, const SilhouetteHole& b) {
+      return a.area_mm2 > b.area_mm2;
+    });
     return holes;
   }
 
@@ -244,8 +241,8 @@ class Silhouette {
       }
     }
   }
-  Hole Flood(int x0, int y0) {
-    Hole hole;
+  SilhouetteHole Flood(int x0, int y0) {
+    SilhouetteHole hole;
     Eigen::Vector2d sum(0, 0);
     std::queue<std::pair<int, int>> queue;
     queue.push({x0, y0});
@@ -264,7 +261,7 @@ class Silhouette {
         queue.push({u, v});
       }
     }
-    hole.area = double(count) * kCell_mm * kCell_mm;
+    hole.area_mm2 = double(count) * kCell_mm * kCell_mm;
     hole.centre = origin_ + sum / double(count) * kCell_mm;
     return hole;
   }
@@ -285,6 +282,11 @@ double CurveOf(const LensOpening& opening) {
 }
 
 }  // namespace
+
+std::vector<SilhouetteHole> SilhouetteHoles(const TriangleMesh& mesh) {
+  if (mesh.empty()) return {};
+  return Silhouette(mesh).Holes();
+}
 
 Result<LensOpening> TraceOpening(const TriangleMesh& front,
                                  const Eigen::Isometry3d& frame_from_axis,
@@ -338,15 +340,15 @@ Result<LensOpening> TraceOpening(const TriangleMesh& front,
 
 Result<TracedOpenings> TraceOpenings(const TriangleMesh& front, const ContourOptions& options) {
   if (front.empty()) return Failure("frame: no closed rim: the front has no triangles");
-  std::vector<Hole> holes = Silhouette(front).Holes();
-  std::erase_if(holes, [&](const Hole& h) { return h.area < options.min_area_mm2; });
+  std::vector<SilhouetteHole> holes = SilhouetteHoles(front);
+  std::erase_if(holes, [&](const SilhouetteHole& h) { return h.area_mm2 < options.min_area_mm2; });
   if (holes.size() < 2) {
     return Failure("frame: no closed rim: got " + std::to_string(holes.size()) +
                    " openings seen from the front, want 2");
   }
   if (holes[0].centre.x() > holes[1].centre.x()) std::swap(holes[0], holes[1]);
   TracedOpenings traced;
-  const auto trace = [&](const Hole& hole) {
+  const auto trace = [&](const SilhouetteHole& hole) {
     Eigen::Isometry3d axis = Eigen::Isometry3d::Identity();
     axis.translation() << hole.centre.x(), hole.centre.y(), 0;
     return TraceOpening(front, axis, options);

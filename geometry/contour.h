@@ -3,6 +3,8 @@
 // front along each opening's own axis, inner edge of the rim and bottom of its groove.
 #pragma once
 
+#include <vector>
+
 #include "base/mesh.h"
 #include "base/result.h"
 #include "geometry/frame_model.h"
@@ -34,6 +36,13 @@ struct TracedOpenings {
 };
 // Finds the two openings of a front seen along the frame's +z and traces them.
 Result<TracedOpenings> TraceOpenings(const TriangleMesh& front, const ContourOptions& options = {});
+
+// Empty regions that a mesh seen along z encloses, greatest first; to 0.25 mm.
+struct SilhouetteHole {
+  Eigen::Vector2d centre{0, 0};  // of its area, mm
+  double area_mm2 = 0;
+};
+std::vector<SilhouetteHole> SilhouetteHoles(const TriangleMesh& mesh);
 
 // All parts of one kind as one mesh.
 TriangleMesh PartsOfKind(const FrameModel& frame, FramePartKind kind);

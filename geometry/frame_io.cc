@@ -7,6 +7,8 @@
 #include <system_error>
 
 #include "base/atomic_file.h"
+#include "geometry/frame_import.h"
+#include "geometry/model_file.h"
 #include "geometry/parametric_frame.h"
 
 namespace lorgnette {
@@ -55,7 +57,7 @@ Result<std::vector<ShippedFrame>> ListShippedFrames() {
   return frames;
 }
 
-Result<FrameModel> LoadFrame(const std::string& name_or_path) {
+Result<FrameModel> LoadFrame(const std::string& name_or_path, std::optional<double> unit_mm) {
   const fs::path given(name_or_path);
   std::error_code error;
   if (given.extension().empty() && !given.has_parent_path()) {
@@ -77,7 +79,8 @@ Result<FrameModel> LoadFrame(const std::string& name_or_path) {
     LG_ASSIGN(const FrameParameters parameters, ReadParameters(name_or_path));
     return BuildFrame(parameters);
   }
-  return UsageError(name_or_path + ": got a file of type \"" + extension + "\", want .json");
+  LG_ASSIGN(const ModelFile model, ReadModelFile(name_or_path));
+  return ImportFrame(model, name_or_path, unit_mm);
 }
 
 }  // namespace lorgnette

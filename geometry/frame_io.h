@@ -2,6 +2,7 @@
 // Frames by name or from a file.
 #pragma once
 
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -24,7 +25,10 @@ std::string DataDirectory();
 // In the order of their names. Fails when the folder is missing or a file in it cannot be read.
 Result<std::vector<ShippedFrame>> ListShippedFrames();
 
-// A shipped frame by name, or a .json file of frame parameters by path.
-Result<FrameModel> LoadFrame(const std::string& name_or_path);
+// A shipped frame by name, a .json file of frame parameters, or a model file (.glb, .gltf, .obj,
+// .ply, .stl; geometry/frame_import.h) by path.
+//   unit_mm  mm per unit of the file, where the file does not say
+Result<FrameModel> LoadFrame(const std::string& name_or_path,
+                             std::optional<double> unit_mm = std::nullopt);
 
 }  // namespace lorgnette

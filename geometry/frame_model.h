@@ -62,6 +62,8 @@ struct FrameModel {
   std::vector<Eigen::Vector3d> nose_contacts;
   // Where each temple bends down over the ear, frame coordinates (right, left).
   Eigen::Vector3d ear_point_right{0, 0, 0}, ear_point_left{0, 0, 0};
+  double face_form_deg = 0, frame_curve_diopters = 0;  // of the openings, tooling index 1.530
+  std::vector<std::string> notes;  // what a loader guessed or repaired: "unit guessed: ..."
 };
 
 }  // namespace lorgnette

@@ -60,6 +60,8 @@ FrameModel BuildFrame(const FrameParameters& parameters, const FrameTessellation
   model.boxing = MeasureContour(model.left.contour_mm);
   model.boxing.dbl_mm = parameters.dbl_mm;
   model.pantoscopic_tilt_deg = parameters.pantoscopic_tilt_deg;
+  model.face_form_deg = parameters.face_form_deg;
+  model.frame_curve_diopters = parameters.frame_curve_diopters;
   model.temple_length_mm = parameters.temples.length_mm;
   model.temple_spread_mm = parameters.temples.spread_mm;
   for (const Eigen::Vector3d& p : pad.contacts) {
