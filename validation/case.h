@@ -23,7 +23,7 @@ struct Check {
   double measured = 0;
   double tolerance = 0;  // absolute
   Certainty certainty = Certainty::kExact;
-  std::string reason;  // where the tolerance comes from
+  std::string reason = {};  // where the tolerance comes from
 
   bool passed() const;
   // Number of leading decimal digits that agree: -log10(|measured - expected| / |expected|), with
