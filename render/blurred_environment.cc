@@ -54,8 +54,24 @@ struct Source {
   std::vector<Eigen::Vector2f> columns;  // -sin lon, cos lon
 };
 
+// The map on a grid fine enough for the kernel: interpolated where it has fewer texels.
+ImageRgbF AtLeast(const Environment& environment, int width, int height) {
+  if (environment.map().width >= width && environment.map().height >= height) {
+    return environment.map();
+  }
+  const Environment grid(ImageRgbF(width, height));
+  ImageRgbF map(width, height);
+  for (int y = 0; y < height; ++y) {
+    for (int x = 0; x < width; ++x) {
+      const Eigen::Vector3f light = environment.Radiance(grid.Direction(x + 0.5, y + 0.5));
+      std::copy(light.data(), light.data() + 3, map.at(x, y));
+    }
+  }
+  return map;
+}
+
 Source Reduce(const Environment& environment, int width) {
-  const ImageRgbF& in = environment.map();
+  const ImageRgbF in = AtLeast(environment, width, width / 2);
   const int factor = std::max(1, in.width / width);
   Source out;
   out.map = ImageRgbF((in.width + factor - 1) / factor, (in.height + factor - 1) / factor);

@@ -1,6 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "render/tile_mask.h"
 
+#include <tbb/blocked_range.h>
+#include <tbb/parallel_for.h>
+
 #include <algorithm>
 #include <cmath>
 
@@ -21,22 +24,37 @@ class Marker {
     mask.content.assign(std::size_t(mask.columns) * std::size_t(mask.rows), 0);
   }
 
+  // A point in the picture; NaN where it cannot be projected.
+  Eigen::Vector2f Project(const Eigen::Vector3f& head_point) const {
+    const Eigen::Vector3f p = rotation_ * head_point + translation_;
+    if (p.z() < kNearest_mm) return Eigen::Vector2f::Constant(std::nanf(""));
+    return {float(camera_.fx) * p.x() / p.z() + float(camera_.cx),
+            float(camera_.fy) * p.y() / p.z() + float(camera_.cy)};
+  }
   struct Box {
     float x0 = 1e30f, y0 = 1e30f, x1 = -1e30f, y1 = -1e30f;
     bool everywhere = false;
-  };
-  void Add(Box& box, const Eigen::Vector3f& head_point) const {
-    const Eigen::Vector3f p = rotation_ * head_point + translation_;
-    if (p.z() < kNearest_mm) {
-      box.everywhere = true;
-      return;
+    void Add(const Eigen::Vector2f& p) {
+      if (std::isnan(p.x())) {
+        everywhere = true;
+        return;
+      }
+      x0 = std::min(x0, p.x());
+      x1 = std::max(x1, p.x());
+      y0 = std::min(y0, p.y());
+      y1 = std::max(y1, p.y());
     }
-    const float x = float(camera_.fx) * p.x() / p.z() + float(camera_.cx);
-    const float y = float(camera_.fy) * p.y() / p.z() + float(camera_.cy);
-    box.x0 = std::min(box.x0, x);
-    box.x1 = std::max(box.x1, x);
-    box.y0 = std::min(box.y0, y);
-    box.y1 = std::max(box.y1, y);
+  };
+  template <typename Points>
+  std::vector<Eigen::Vector2f> ProjectAll(const Points& points) const {
+    std::vector<Eigen::Vector2f> projected(points.size());
+    tbb::parallel_for(tbb::blocked_range<std::size_t>(0, points.size(), 1024),
+                      [&](const tbb::blocked_range<std::size_t>& range) {
+                        for (std::size_t i = range.begin(); i < range.end(); ++i) {
+                          projected[i] = Project(points[i].template cast<float>());
+                        }
+                      });
+    return projected;
   }
   void Mark(const Box& box, std::uint8_t bits) {
     int c0 = 0, r0 = 0, c1 = mask.columns - 1, r1 = mask.rows - 1;
@@ -74,12 +92,10 @@ class Marker {
 TileMask MarkTiles(const HeadScene& head, const Camera& camera,
                    const Eigen::Isometry3d& camera_from_head) {
   Marker marker(camera, camera_from_head);
-  const TriangleMesh& frame = head.frame.mesh;
-  for (const Eigen::Vector3i& t : frame.triangles) {
+  const std::vector<Eigen::Vector2f> frame = marker.ProjectAll(head.frame.mesh.positions);
+  for (const Eigen::Vector3i& t : head.frame.mesh.triangles) {
     Marker::Box box;
-    for (int k = 0; k < 3; ++k) {
-      marker.Add(box, frame.positions[std::size_t(t[k])].cast<float>());
-    }
+    for (int k = 0; k < 3; ++k) box.Add(frame[std::size_t(t[k])]);
     marker.Mark(box, kTileFrame);
   }
   for (std::size_t i = 0; i < head.lenses.size(); ++i) {
@@ -89,18 +105,17 @@ TileMask MarkTiles(const HeadScene& head, const Camera& camera,
       const Eigen::Vector3d p(corner & 1 ? lens.low().x() : lens.high().x(),
                               corner & 2 ? lens.low().y() : lens.high().y(),
                               corner & 4 ? lens.low().z() : lens.high().z());
-      marker.Add(box, (lens.head_from_lens() * p).cast<float>());
+      box.Add(marker.Project((lens.head_from_lens() * p).cast<float>()));
     }
     marker.Mark(box, i == 0 ? kTileRightLens : kTileLeftLens);
   }
   const bool everywhere = head.paper_shadow.has_value();
   if (!everywhere && !head.baked_shadow) return std::move(marker.mask);
+  const std::vector<Eigen::Vector2f> face = marker.ProjectAll(head.face_vertices);
   for (std::size_t t = 0; t < head.face_triangles.size(); ++t) {
     if (!everywhere && !head.baked_shadow->touched(std::uint32_t(t))) continue;
     Marker::Box box;
-    for (int k = 0; k < 3; ++k) {
-      marker.Add(box, head.face_vertices[std::size_t(head.face_triangles[t][k])]);
-    }
+    for (int k = 0; k < 3; ++k) box.Add(face[std::size_t(head.face_triangles[t][k])]);
     marker.Mark(box, kTileShadow);
   }
   return std::move(marker.mask);

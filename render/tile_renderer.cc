@@ -85,18 +85,23 @@ struct Bundle {
   }
 };
 
-// Whether a straight ray is inside a box anywhere before `far`.
-bool MeetsBox(const Eigen::Vector3f& origin, const Eigen::Vector3f& direction,
-              const Eigen::Vector3d& low, const Eigen::Vector3d& high, float far) {
+// Whether a straight ray (lens frame) may touch the glass before `far`: it meets the box around it
+// and does not stay beside the contour on its way through.
+bool MayTouch(const LensSolid& solid, const Eigen::Vector3f& origin,
+              const Eigen::Vector3f& direction, float far) {
   float t0 = 0, t1 = far;
   for (int k = 0; k < 3; ++k) {
     const float inverse = 1 / direction[k];
-    float a = (float(low[k]) - origin[k]) * inverse, b = (float(high[k]) - origin[k]) * inverse;
+    float a = (float(solid.low()[k]) - origin[k]) * inverse;
+    float b = (float(solid.high()[k]) - origin[k]) * inverse;
     if (a > b) std::swap(a, b);
     t0 = std::max(t0, a);
     t1 = std::min(t1, b);
   }
-  return t0 <= t1;
+  if (!(t0 <= t1)) return false;
+  const Eigen::Vector3f middle = origin + 0.5f * (t0 + t1) * direction;
+  const float half_way = 0.5f * (t1 - t0) * direction.head<2>().norm();
+  return solid.contour().OutsideBy(double(middle.x()), double(middle.y())) <= double(half_way);
 }
 
 Eigen::Vector3f Mirrored(const Eigen::Vector3f& d, const Eigen::Vector3f& normal) {
@@ -221,8 +226,7 @@ void TileRenderer::TraceLens(std::size_t lens, Batch& batch, std::vector<CameraS
   for (std::size_t i = 0; i < samples.size(); ++i) {
     const Eigen::Vector3f d = lens_from_head * batch.primary.directions[i];
     const SceneHit& hit = batch.primary.hits[i];
-    if (MeetsBox(origin_in_lens, d, solid.low(), solid.high(),
-                 hit.hit() ? hit.distance : kInfinity)) {
+    if (MayTouch(solid, origin_in_lens, d, hit.hit() ? hit.distance : kInfinity)) {
       batch.sample_of.push_back(std::uint32_t(i));
     }
   }

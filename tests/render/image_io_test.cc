@@ -1,0 +1,127 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "render/image_io.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <filesystem>
+
+#include "base/atomic_file.h"
+
+namespace lorgnette {
+namespace {
+
+std::string Temporary(const std::string& name) { return testing::TempDir() + "image_io_" + name; }
+
+ImageRgbF Ramp(int width, int height) {
+  ImageRgbF image(width, height);
+  for (std::size_t i = 0; i < image.data.size(); ++i) {
+    image.data[i] = std::ldexp(1.0f + float(i % 97) / 97.0f, int(i % 21) - 10);
+  }
+  return image;
+}
+
+TEST(Exr, KeepsFloatsToTheBit) {
+  const std::string path = Temporary("float.exr");
+  const ImageRgbF image = Ramp(13, 7);
+  ASSERT_TRUE(WriteExr(image, path, ExrDepth::kFloat));
+  const auto back = ReadExr(path);
+  ASSERT_TRUE(back) << back.error().message;
+  EXPECT_EQ(back->width, 13);
+  EXPECT_EQ(back->height, 7);
+  EXPECT_EQ(back->data, image.data);
+}
+
+TEST(Exr, KeepsHalvesToTheirPrecisionAndClampsAtTheirRange) {
+  const std::string path = Temporary("half.exr");
+  ImageRgbF image = Ramp(5, 4);
+  image.data[3] = 1e9f;
+  ASSERT_TRUE(WriteExr(image, path));
+  const auto back = ReadExr(path);
+  ASSERT_TRUE(back);
+  EXPECT_EQ(back->data[3], 65504.0f);
+  for (std::size_t i = 0; i < image.data.size(); ++i) {
+    // Half a unit in the last of 11 bits.
+    if (i != 3) {
+      EXPECT_NEAR(back->data[i] / image.data[i], 1, 0x1p-11) << i;
+    }
+  }
+}
+
+TEST(Exr, KeepsTheFourthChannel) {
+  const std::string path = Temporary("rgba.exr");
+  ImageRgbaF image(3, 2);
+  for (std::size_t i = 0; i < image.data.size(); ++i) image.data[i] = float(i);
+  ASSERT_TRUE(WriteExr(image, path, ExrDepth::kFloat));
+  const auto back = ReadExrRgba(path);
+  ASSERT_TRUE(back);
+  EXPECT_EQ(back->data, image.data);
+}
+
+TEST(Exr, TellsWhatIsWrongWithAFile) {
+  const std::string path = Temporary("broken.exr");
+  ASSERT_TRUE(WriteFileAtomically(path, "this is no picture"));
+  const auto broken = ReadExr(path);
+  ASSERT_FALSE(broken);
+  EXPECT_NE(broken.error().message.find(path), std::string::npos);
+  EXPECT_FALSE(ReadHighDynamicRange(path));
+  EXPECT_FALSE(ReadExr(Temporary("missing.exr")));
+}
+
+TEST(Exr, LeavesNothingBehindWhereItCannotWrite) {
+  EXPECT_FALSE(WriteExr(Ramp(2, 2), Temporary("no_folder/x.exr")));
+}
+
+// 8 pixels of run-length coded scan line: R a run of 8, G literals, B and E runs.
+std::string HdrOfOneRow() {
+  std::string file = "#?RADIANCE\nFORMAT=32-bit_rle_rgbe\n\n-Y 1 +X 8\n";
+  file += std::string("\x02\x02\x00\x08", 4);
+  file += std::string("\x88\x80", 2);
+  file += std::string("\x08\x00\x10\x20\x30\x40\x50\x60\x70", 9);
+  file += std::string("\x88\x40", 2);
+  file += std::string("\x88\x81", 2);
+  return file;
+}
+
+TEST(RadianceHdr, DecodesRunsAndLiterals) {
+  const std::string path = Temporary("row.hdr");
+  ASSERT_TRUE(WriteFileAtomically(path, HdrOfOneRow()));
+  const auto image = ReadHighDynamicRange(path);
+  ASSERT_TRUE(image) << image.error().message;
+  ASSERT_EQ(image->width, 8);
+  ASSERT_EQ(image->height, 1);
+  // (m + 0.5) * 2^(e - 136) with e = 129.
+  for (int x = 0; x < 8; ++x) {
+    EXPECT_FLOAT_EQ(image->at(x, 0)[0], 128.5f / 128);
+    EXPECT_FLOAT_EQ(image->at(x, 0)[1], (16.0f * float(x) + 0.5f) / 128);
+    EXPECT_FLOAT_EQ(image->at(x, 0)[2], 64.5f / 128);
+  }
+}
+
+TEST(RadianceHdr, RefusesAFileThatIsCutShort) {
+  const std::string path = Temporary("short.hdr");
+  const std::string whole = HdrOfOneRow();
+  ASSERT_TRUE(WriteFileAtomically(path, whole.substr(0, whole.size() - 3)));
+  const auto image = ReadRadianceHdr(path);
+  ASSERT_FALSE(image);
+  EXPECT_NE(image.error().message.find("row 0"), std::string::npos) << image.error().message;
+}
+
+TEST(Picture, KeepsPngToTheBit) {
+  const std::string path = Temporary("picture.png");
+  ImageRgb8 image(5, 3);
+  for (std::size_t i = 0; i < image.data.size(); ++i) image.data[i] = std::uint8_t(17 * i);
+  ASSERT_TRUE(WritePicture(image, path));
+  const auto back = ReadPicture(path);
+  ASSERT_TRUE(back);
+  EXPECT_EQ(back->data, image.data);
+}
+
+TEST(Picture, RefusesAnExtensionItCannotWrite) {
+  const Status status = WritePicture(ImageRgb8(1, 1), Temporary("picture.gif"));
+  ASSERT_FALSE(status);
+  EXPECT_EQ(status.error().kind, ErrorKind::kUsage);
+}
+
+}  // namespace
+}  // namespace lorgnette

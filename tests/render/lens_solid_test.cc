@@ -1,0 +1,139 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "render/lens_solid.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <random>
+
+#include "optics/trace.h"
+#include "tests/render/render_test_scene.h"
+
+namespace lorgnette {
+namespace {
+
+using test::LensRecipe;
+
+TEST(ContourIndex, AgreesWithTheEllipseAboutInside) {
+  const ContourIndex contour(test::Ellipse(50, 38, 720));
+  std::mt19937 random(1);
+  std::uniform_real_distribution<double> x(-30, 30), y(-24, 24);
+  for (int i = 0; i < 20000; ++i) {
+    const Eigen::Vector2d p(x(random), y(random));
+    const double level = std::hypot(p.x() / 25, p.y() / 19);
+    // The polygon lies inside the ellipse by at most 1 - cos(pi / 720) = 9.5e-6 of its radius.
+    if (std::abs(level - 1) < 2e-5) continue;
+    EXPECT_EQ(contour.Contains(p.x(), p.y()), level < 1) << p.transpose();
+    // Bounds: never more than the distance along any line to the ellipse.
+    const double radial = std::abs(level - 1) * p.norm() / level;
+    EXPECT_LE(contour.Clearance(p.x(), p.y()), level < 1 ? radial + 1e-6 : 0);
+    EXPECT_LE(contour.OutsideBy(p.x(), p.y()), level > 1 ? radial + 1e-3 : 0);
+  }
+}
+
+TEST(ContourIndex, FindsWhereALineLeaves) {
+  const ContourIndex square({{-10, -10}, {10, -10}, {10, 10}, {-10, 10}});
+  const auto crossing = square.FirstCrossing({0, 1}, {2, 0}, 0, 100);
+  ASSERT_TRUE(crossing);
+  EXPECT_NEAR(crossing->t, 5, 1e-12);
+  EXPECT_GT(crossing->normal.x(), 0.7);
+  EXPECT_FALSE(square.FirstCrossing({0, 1}, {2, 0}, 0, 4.9));
+  EXPECT_FALSE(square.FirstCrossing({20, 1}, {2, 0}, 0, 100));
+}
+
+class LensSolidOf : public testing::TestWithParam<LensRecipe> {
+ protected:
+  LensSolidOf()
+      : lens_(test::MakeLens(GetParam()).lens()),
+        solid_(lens_, test::Ellipse(GetParam().width_mm, GetParam().height_mm),
+               Eigen::Isometry3d::Identity()) {}
+  Lens lens_;
+  LensSolid solid_;
+};
+
+TEST_P(LensSolidOf, LetsARayThroughAsTheReferenceTraceDoes) {
+  std::mt19937 random(2);
+  std::uniform_real_distribution<double> across(-0.6, 0.6), slope(-0.25, 0.25);
+  for (int i = 0; i < 500; ++i) {
+    const Eigen::Vector3d target(across(random) * 24, across(random) * 18, 0);
+    const Eigen::Vector3d d = Eigen::Vector3d(slope(random), slope(random), 1).normalized();
+    const Ray ray{target - 500 * d, d};
+    const LensTrace reference = TraceThrough(lens_, ray);
+    ASSERT_EQ(reference.status, RayStatus::kOk);
+    const auto enter = solid_.Enter(ray);
+    ASSERT_TRUE(enter);
+    EXPECT_EQ(enter->face, SolidFace::kFront);
+    // 500 mm away a double has 1e-13 mm; both take a different route there.
+    EXPECT_LT((enter->point - reference.first.point).norm(), 1e-11);
+    const Ray inside{enter->point, reference.inside_direction};
+    const auto leave = solid_.Leave(inside);
+    ASSERT_TRUE(leave);
+    EXPECT_EQ(leave->face, SolidFace::kBack);
+    EXPECT_LT((leave->point - reference.second.point).norm(), 1e-11);
+    EXPECT_GT(leave->normal.dot(inside.direction), 0);
+  }
+}
+
+TEST_P(LensSolidOf, LetsNoRayStayInside) {
+  std::mt19937 random(3);
+  std::normal_distribution<double> gauss;
+  int walls = 0, backs = 0, fronts = 0;
+  for (int i = 0; i < 3000; ++i) {
+    // From the middle of the glass above a point of the contour's inside, in any direction.
+    const double r = std::sqrt(std::uniform_real_distribution<double>(0, 0.95)(random));
+    const double angle = std::uniform_real_distribution<double>(0, 2 * kPi)(random);
+    const double x = r * 0.5 * GetParam().width_mm * std::cos(angle);
+    const double y = r * 0.5 * GetParam().height_mm * std::sin(angle);
+    const double front = lens_.front.Jet(x, y)->z;
+    const double back = lens_.center_thickness_mm + lens_.back.Jet(x, y)->z;
+    Ray ray{{x, y, 0.5 * (front + back)},
+            Eigen::Vector3d(gauss(random), gauss(random), gauss(random)).normalized()};
+    for (int bounce = 0; bounce < 4; ++bounce) {
+      const auto hit = solid_.Leave(ray);
+      ASSERT_TRUE(hit) << i << " after " << bounce << ": " << ray.origin.transpose() << " toward "
+                       << ray.direction.transpose();
+      EXPECT_GT(hit->normal.dot(ray.direction), 0);
+      walls += hit->face == SolidFace::kWall;
+      fronts += hit->face == SolidFace::kFront;
+      backs += hit->face == SolidFace::kBack;
+      // Just past the boundary the ray is outside: it may come back, but not at once.
+      const auto again = solid_.Enter({hit->point, ray.direction});
+      if (again) {
+        EXPECT_GT(again->distance, 1e-4);
+      }
+      ray = {hit->point, Reflect(ray.direction, hit->normal)};
+    }
+  }
+  EXPECT_GT(walls, 100);
+  EXPECT_GT(fronts, 100);
+  EXPECT_GT(backs, 100);
+}
+
+TEST_P(LensSolidOf, IsMissedBesideItsContour) {
+  std::mt19937 random(4);
+  std::uniform_real_distribution<double> across(-40, 40);
+  for (int i = 0; i < 2000; ++i) {
+    const double x = across(random), y = across(random);
+    const auto hit = solid_.Enter({{x, y, -50}, {0, 0, 1}});
+    EXPECT_EQ(hit.has_value(), solid_.contour().Contains(x, y)) << x << ", " << y;
+  }
+}
+
+TEST_P(LensSolidOf, IsEnteredThroughItsWallFromTheSide) {
+  const double z =
+      0.5 * (lens_.front.Jet(0.499 * GetParam().width_mm, 0)->z + lens_.center_thickness_mm +
+             lens_.back.Jet(0.499 * GetParam().width_mm, 0)->z);
+  const auto hit = solid_.Enter({{100, 0.3, z}, {-1, 0, 0}});
+  ASSERT_TRUE(hit);
+  EXPECT_EQ(hit->face, SolidFace::kWall);
+  EXPECT_NEAR(hit->point.x(), 0.5 * GetParam().width_mm, 0.05);
+  EXPECT_GT(hit->normal.x(), 0.9);
+}
+
+INSTANTIATE_TEST_SUITE_P(Recipes, LensSolidOf,
+                         testing::Values(LensRecipe{-6, 0, 0, 1.6}, LensRecipe{5, 0, 0, 1.5},
+                                         LensRecipe{-4.25, -0.75, 160, 1.6},
+                                         LensRecipe{-12, -2, 30, 1.74}, LensRecipe{0, 0, 0, 1.5}));
+
+}  // namespace
+}  // namespace lorgnette
