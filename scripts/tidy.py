@@ -39,9 +39,9 @@ def closure(path, seen):
 
 
 def without_precompiled(command):
-    """The compile command without the headers that GCC precompiled, which clang cannot read."""
+    """The compile command without the headers that GCC precompiled, and what goes with them."""
     command = re.sub(r" -include \S*cmake_pch\.hxx", "", command)
-    return command.replace(" -Winvalid-pch", "")
+    return command.replace(" -Winvalid-pch", "").replace(" -Wno-restrict", "")
 
 
 def key(entry, path, version):
