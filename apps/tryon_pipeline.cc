@@ -48,7 +48,7 @@ Result<Environment> ReadEnvironment(const TryonRequest& request, TryonResult& re
   const std::string path = request.environment.empty() ? DefaultEnvironment() : request.environment;
   if (path.empty()) {
     result.environment = "even grey";
-    result.warnings.push_back("no environment: lit by even grey light");
+    result.warnings.emplace_back("no environment: lit by even grey light");
     return Environment::Constant({1, 1, 1});
   }
   result.environment = path;
