@@ -101,6 +101,7 @@ BakedShadow BakedShadow::Bake(const EmbreeScene& scene, const TriangleMesh& face
 
   const std::vector<Eigen::Vector3f> sphere = SphereDirections(options.directions);
   std::vector<std::vector<Blocked>> results(points.size());
+  std::vector<std::uint8_t> buried(points.size(), 0);  // no way out past the frame
   tbb::parallel_for(std::size_t(0), points.size(), [&](std::size_t i) {
     const LatticeCorner& at = points[i];
     const Eigen::Vector3i& triangle = face.triangles[at.triangle];
@@ -112,15 +113,18 @@ BakedShadow BakedShadow::Bake(const EmbreeScene& scene, const TriangleMesh& face
     }
     normal.normalize();
     std::vector<Blocked>& blocked = results[i];
+    std::size_t above = 0;
     ForHemispherePackets(sphere, position + kFrameLift_mm * normal, normal,
                          [&](std::size_t first, RayPacket& packet, const float* cosine) {
                            scene.Occluded16(RaySet::kFrame, packet);
                            for (std::size_t k = 0; k < RayPacket::kSize; ++k) {
-                             if (packet.valid[k] && packet.far[k] < 0) {
-                               blocked.push_back({std::uint16_t(first + k), false, cosine[k]});
-                             }
+                             if (!packet.valid[k]) continue;
+                             ++above;
+                             if (packet.far[k] >= 0) continue;
+                             blocked.push_back({std::uint16_t(first + k), false, cosine[k]});
                            }
                          });
+    buried[i] = blocked.size() == above;
     if (options.sees_face) {
       MarkWhatTheFaceHides(scene, sphere, position + kFaceLift_mm * normal, blocked);
     }
@@ -132,7 +136,7 @@ BakedShadow BakedShadow::Bake(const EmbreeScene& scene, const TriangleMesh& face
     is_touched[i] = true;
     baked.touched_.push_back({std::uint32_t(i), std::uint32_t(baked.blocked_.size()),
                               std::uint32_t(results[i].size()), face.triangles[points[i].triangle],
-                              points[i].u, points[i].v});
+                              points[i].u, points[i].v, bool(buried[i])});
     baked.blocked_.insert(baked.blocked_.end(), results[i].begin(), results[i].end());
   }
   for (Lattice& lattice : baked.lattices_) {
@@ -224,6 +228,10 @@ std::vector<Eigen::Vector3f> BakedShadow::Relight(const HeadLight& light) const 
   std::vector<Eigen::Vector3f> ratios(point_count_, Eigen::Vector3f::Ones());
   tbb::parallel_for(std::size_t(0), touched_.size(), [&](std::size_t i) {
     const Touched& point = touched_[i];
+    if (point.buried) {
+      ratios[point.point].setConstant(kBuried);
+      return;
+    }
     Eigen::Vector3f lost_seen = Eigen::Vector3f::Zero(), lost_hidden = Eigen::Vector3f::Zero();
     for (std::uint32_t k = 0; k < point.blocked_count; ++k) {
       const Blocked& b = blocked_[point.first_blocked + k];
@@ -257,15 +265,26 @@ Eigen::Vector3f BakedShadow::Ratio(const std::vector<Eigen::Vector3f>& relit,
   const int j = std::min(int(y), cells - 1);
   const int i = std::min(int(x), cells - 1 - j);
   const float fx = std::clamp(x - float(i), 0.0f, 1.0f), fy = std::clamp(y - float(j), 0.0f, 1.0f);
-  const auto at = [&](int column, int row) -> const Eigen::Vector3f& {
+  Eigen::Vector3f sum = Eigen::Vector3f::Zero();
+  float weight = 0;
+  const auto add = [&](float w, int column, int row) {
     const int index = row * (cells + 1) - row * (row - 1) / 2 + column;
-    return relit[corners_[lattice.first + std::size_t(index)]];
+    const Eigen::Vector3f& ratio = relit[corners_[lattice.first + std::size_t(index)]];
+    if (ratio.x() == kBuried) return;
+    sum += w * ratio;
+    weight += w;
   };
   if (fx + fy <= 1 || i + j + 2 > cells) {
-    const float rest = std::max(1 - fx - fy, 0.0f);
-    return rest * at(i, j) + fx * at(i + 1, j) + fy * at(i, j + 1);
+    add(std::max(1 - fx - fy, 0.0f), i, j);
+    add(fx, i + 1, j);
+    add(fy, i, j + 1);
+  } else {
+    add(fx + fy - 1, i + 1, j + 1);
+    add(1 - fx, i, j + 1);
+    add(1 - fy, i + 1, j);
   }
-  return (fx + fy - 1) * at(i + 1, j + 1) + (1 - fx) * at(i, j + 1) + (1 - fy) * at(i + 1, j);
+  constexpr float kLeastWeight = 1e-3f;
+  return weight > kLeastWeight ? Eigen::Vector3f(sum / weight) : Eigen::Vector3f::Ones();
 }
 
 }  // namespace lorgnette

@@ -68,7 +68,9 @@ class BakedShadow {
   std::size_t touched_count() const { return touched_.size(); }
   // False where the frame hides nothing from any point of the triangle: its ratio is exactly 1.
   bool touched(std::uint32_t triangle) const { return lattices_[triangle].touched; }
-  // S_withGlasses / S_noGlasses by channel, one a point, in [0, 1].
+  // S_withGlasses / S_noGlasses by channel, one a point, in [0, 1]; kBuried where the point lies
+  // inside the frame, which a coarse face mesh can bring about. Ratio passes over such points.
+  static constexpr float kBuried = -1;
   std::vector<Eigen::Vector3f> Relight(const HeadLight& light) const;
   Eigen::Vector3f Ratio(const std::vector<Eigen::Vector3f>& relit, std::uint32_t triangle, float u,
                         float v) const;
@@ -89,6 +91,7 @@ class BakedShadow {
     std::uint32_t first_blocked, blocked_count;
     Eigen::Vector3i vertices;  // of its triangle
     float u, v;
+    bool buried;
   };
   // Light that arrives without glasses, at the vertices: it varies slowly.
   struct Open {

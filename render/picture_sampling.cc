@@ -14,7 +14,7 @@ constexpr int kTaps = 8;
 // Weights of eight neighbours of a position `f` past the fourth of them: Keys' six-point cubic
 // (fourth-order convergence; IEEE Trans. ASSP 29(6), 1981), over samples that two terms of the
 // inverse of a box mean have sharpened: 1 - d^2 / 24 + 3 d^4 / 640, d^2 the second difference.
-void SharpCubicWeights(float f, float w[kTaps]) {
+void ComputeWeights(float f, float w[kTaps]) {
   const auto keys = [](float x) {
     x = std::abs(x);
     if (x < 1) return ((4.0f / 3) * x - 7.0f / 3) * x * x + 1;
@@ -35,6 +35,19 @@ void SharpCubicWeights(float f, float w[kTaps]) {
   for (int k = 0; k < kTaps; ++k) w[k] /= sum;
 }
 
+// The weights at steps of 1/1024 pixel: at most 1/2048 pixel from where they were asked for.
+class WeightTable {
+ public:
+  WeightTable() {
+    for (int i = 0; i <= kSteps; ++i) ComputeWeights(float(i) / kSteps, weights_[i]);
+  }
+  const float* At(float f) const { return weights_[int(f * kSteps + 0.5f)]; }
+
+ private:
+  static constexpr int kSteps = 1024;
+  float weights_[kSteps + 1][kTaps];
+};
+
 }  // namespace
 
 Eigen::Vector3f SampleBilinear(const ImageRgbF& image, float x, float y) {
@@ -51,9 +64,9 @@ Eigen::Vector3f SampleSharp(const ImageRgbF& image, float x, float y) {
   const float column = std::clamp(x - 0.5f, 0.0f, float(image.width - 1));
   const float row = std::clamp(y - 0.5f, 0.0f, float(image.height - 1));
   const int x0 = int(column) - 3, y0 = int(row) - 3;
-  float wx[kTaps], wy[kTaps];
-  SharpCubicWeights(column - float(x0 + 3), wx);
-  SharpCubicWeights(row - float(y0 + 3), wy);
+  static const WeightTable table;
+  const float* wx = table.At(column - float(x0 + 3));
+  const float* wy = table.At(row - float(y0 + 3));
   // Four lanes at a time: the fourth reads on into the next pixel and is dropped.
   if (x0 >= 0 && y0 >= 0 && x0 + kTaps < image.width && y0 + kTaps <= image.height) {
     Eigen::Vector4f sum = Eigen::Vector4f::Zero();

@@ -76,6 +76,10 @@ float RayFollower::FrameOpacity(const SceneHit& hit, const Eigen::Vector3f& poin
   if (!head_.options.fade_temples || !head_.frame.fades[head_.frame.material_of[hit.triangle]]) {
     return 1;
   }
+  return TempleShare(point);
+}
+
+float RayFollower::TempleShare(const Eigen::Vector3f& point) const {
   const double z = (head_.frame.frame_from_head * point.cast<double>()).z();
   return 1 - SmoothStep(-z, -head_.frame.fade_start_z, -head_.frame.fade_end_z);
 }
@@ -116,7 +120,10 @@ Eigen::Vector3f RayFollower::Frame(const SceneHit& hit, const Eigen::Vector3f& p
 Eigen::Vector3f RayFollower::FaceRatio(const SceneHit& hit, const Eigen::Vector3f& point,
                                        PixelState& pixel) const {
   if (hit.object != SceneObject::kFace) return Eigen::Vector3f::Ones();
-  if (head_.baked_shadow) return head_.baked_shadow->Ratio(ratios_, hit.triangle, hit.u, hit.v);
+  if (head_.baked_shadow) {
+    if (!head_.baked_shadow->touched(hit.triangle)) return Eigen::Vector3f::Ones();
+    return Faded(head_.baked_shadow->Ratio(ratios_, hit.triangle, hit.u, hit.v), point);
+  }
   if (!head_.paper_shadow) return Eigen::Vector3f::Ones();
   if (!pixel.face_ratio) {
     const Eigen::Vector3i& t = head_.face_triangles[hit.triangle];
@@ -127,7 +134,16 @@ Eigen::Vector3f RayFollower::FaceRatio(const SceneHit& hit, const Eigen::Vector3
     pixel.face_ratio = head_.paper_shadow->Ratio(head_.scene, head_.environment, world_from_head_,
                                                  {point, normal}, pixel.seed);
   }
-  return *pixel.face_ratio;
+  return Faded(*pixel.face_ratio, point);
+}
+
+// The shadow of a temple fades with the temple.
+Eigen::Vector3f RayFollower::Faded(const Eigen::Vector3f& ratio,
+                                   const Eigen::Vector3f& point) const {
+  if (!head_.options.fade_temples) return ratio;
+  const float share = TempleShare(point);
+  if (share == 1) return ratio;
+  return Eigen::Vector3f::Ones() - share * (Eigen::Vector3f::Ones() - ratio);
 }
 
 Eigen::Vector3f RayFollower::Head(const SceneHit& hit, const Eigen::Vector3f& point,

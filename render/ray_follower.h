@@ -64,6 +64,9 @@ class RayFollower {
                             PixelState& pixel) const;
 
  private:
+  // 1 at the front, 0 at the ears: how much of a temple beside this point is left.
+  float TempleShare(const Eigen::Vector3f& point) const;
+  Eigen::Vector3f Faded(const Eigen::Vector3f& ratio, const Eigen::Vector3f& point) const;
   Eigen::Vector3f Head(const SceneHit& hit, const Eigen::Vector3f& point, PixelState& pixel) const;
   Eigen::Vector3f Miss(const Eigen::Vector3f& origin, const Eigen::Vector3f& direction,
                        bool transmitted, PixelState& pixel) const;

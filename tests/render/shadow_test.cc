@@ -175,6 +175,44 @@ TEST(BakedShadow, KnowsItsUntouchedTriangles) {
   }
 }
 
+// A coarse face mesh lets the frame cut into the skin: no black spots around the points inside it.
+TEST(BakedShadow, PassesOverPointsInsideTheFrame) {
+  TriangleMesh face = test::Wall(20, 0, 4);
+  TriangleMesh box = test::Wall(3, 2, 1);  // lid, floor and four sides of a closed box
+  const int lid[4] = {0, 1, 3, 2};
+  for (int i = 0; i < 4; ++i) {
+    Eigen::Vector3d p = box.positions[std::size_t(i)];
+    p.z() = -2;
+    box.positions.push_back(p);
+  }
+  for (int i = 0; i < 4; ++i) {
+    const int a = lid[i], b = lid[(i + 1) % 4];
+    box.triangles.emplace_back(a, a + 4, b + 4);
+    box.triangles.emplace_back(a, b + 4, b);
+  }
+  box.triangles.emplace_back(4, 7, 5);
+  box.triangles.emplace_back(4, 6, 7);
+  ComputeVertexNormals(box);
+  const EmbreeScene scene = *EmbreeScene::Build(face, TriangleMesh{}, box);
+  const BakedShadow baked = BakedShadow::Bake(scene, face, box, {});
+  const auto ratios = baked.Relight(LightAt(
+      SphereDirections(1024), BlurredEnvironment::ForCells(Environment::Constant({1, 1, 1}), 1024),
+      Eigen::Matrix3f::Identity(), 1));
+  int buried = 0;
+  for (const Eigen::Vector3f& r : ratios) buried += r.x() == BakedShadow::kBuried;
+  EXPECT_GT(buried, 0);
+  for (std::uint32_t t = 0; t < face.triangles.size(); ++t) {
+    for (const float u : {0.0f, 0.2f, 0.5f, 0.9f}) {
+      for (const float v : {0.0f, 0.05f, 0.1f}) {
+        const float ratio = baked.Ratio(ratios, t, u, v).x();
+        // At the foot of a wall half of the sky is open.
+        EXPECT_GT(ratio, 0.3f);
+        EXPECT_LE(ratio, 1.0f);
+      }
+    }
+  }
+}
+
 TEST(BakedIrradiance, IsPiTimesTheLightInTheOpenAndHalfUnderAWall) {
   // A point on the floor before an endless wall: half of the cosine-weighted hemisphere is open.
   TriangleMesh wall;
