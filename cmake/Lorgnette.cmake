@@ -72,8 +72,6 @@ function(lorgnette_module name)
                                LORGNETTE_SOURCE_DIR="${PROJECT_SOURCE_DIR}")
     if(LORGNETTE_PCH)
       target_precompile_headers(${name}_tests REUSE_FROM lorgnette_pch_tests)
-      # As -Wno-restrict above: lists of literals, made into strings, are what tests are full of.
-      target_compile_options(${name}_tests PRIVATE -Wno-array-bounds)
     endif()
     if(LORGNETTE_TEST_PROGRAMS)
       add_test(NAME ${name} COMMAND ${name}_tests --gtest_brief=1)
