@@ -128,10 +128,12 @@ TEST_F(PageServerTest, RefusesOversizedRequests) {
 
 TEST_F(PageServerTest, SurvivesWhatIsNotHttp) {
   const PageServer server = Started();
-  for (const std::string& bytes :
-       {std::string("\r\n\r\n"), std::string("GET\r\n\r\n"), std::string("hello\r\n\r\n"),
-        std::string("GET / HTTP/9.9\r\n\r\n"), std::string(64, '\0') + "\r\n\r\n",
-        std::string("GET / HTTP/1.1\r\nno colon\r\n\r\n")}) {
+  std::vector<std::string> strange = {"\r\n\r\n", "GET\r\n\r\n", "hello\r\n\r\n",
+                                      "GET / HTTP/9.9\r\n\r\n",
+                                      "GET / HTTP/1.1\r\nno colon\r\n\r\n"};
+  strange.emplace_back(64, '\0');
+  strange.back().append("\r\n\r\n");
+  for (const std::string& bytes : strange) {
     Ask(server.port(), bytes, true);
     EXPECT_THAT(Get(server.port(), "/"), StartsWith("HTTP/1.1 200"));
   }
