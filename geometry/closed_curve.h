@@ -18,6 +18,7 @@ class ClosedSpline {
   // At least 4 control points.
   explicit ClosedSpline(Polygon2 control);
 
+  const Polygon2& control() const { return control_; }
   Eigen::Vector2d Point(double s) const;
   Eigen::Vector2d Derivative(double s) const;
   // Unit, to the right of the direction of travel: outward on a counter-clockwise curve.
