@@ -42,6 +42,7 @@ LIBRARIES = {
     "httplib": ["apps"],
     "emscripten/": ["web"],
 }
+SYSTEM = ["sys", "arpa", "netinet"]  # folders of the operating system's own headers
 TEST_LIBRARIES = ["gtest/", "gmock/", "rapidcheck"]
 BENCH_LIBRARIES = ["benchmark/"]
 

@@ -39,7 +39,7 @@ def problem(path, name, angled):
     extra = {"tests": house.TEST_LIBRARIES, "bench": house.BENCH_LIBRARIES}.get(kind, [])
     if any(name.startswith(prefix) for prefix in extra):
         return None
-    if "/" in name and not name.startswith("sys/"):
+    if "/" in name and folder not in house.SYSTEM:
         return f"includes <{name}>, want a library of the table in tests/house/house.py"
     return None
 
