@@ -4,6 +4,7 @@
 #include <fcntl.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
+#include <poll.h>
 #include <stdlib.h>
 #include <unistd.h>
 
@@ -63,12 +64,18 @@ TEST(Progress, DrawsABarOnATerminal) {
   }
   dup2(kept, STDERR_FILENO);
   close(kept);
+  // A terminal hands its text over in pieces.
+  std::string text;
   char buffer[4096];
-  const ssize_t size = read(terminal, buffer, sizeof buffer);
+  pollfd waiting{terminal, POLLIN, 0};
+  while ((text.empty() || text.back() != '\n') && poll(&waiting, 1, 2000) == 1) {
+    const ssize_t size = read(terminal, buffer, sizeof buffer);
+    if (size <= 0) break;
+    text.append(buffer, std::size_t(size));
+  }
   close(screen);
   close(terminal);
-  ASSERT_GT(size, 0);
-  const std::string text(buffer, std::size_t(size));
+  ASSERT_FALSE(text.empty());
   EXPECT_THAT(text, HasSubstr("\rrendering [###############               ] 2/4 frames"));
   EXPECT_THAT(text, HasSubstr("[##############################] 4/4 frames"));
   EXPECT_THAT(text, HasSubstr("took "));

@@ -43,7 +43,7 @@ LIBRARIES = {
     "emscripten/": ["web"],
 }
 SYSTEM = ["sys", "arpa", "netinet"]  # folders of the operating system's own headers
-TEST_LIBRARIES = ["gtest/", "gmock/", "rapidcheck"]
+TEST_LIBRARIES = ["gtest/", "gmock/", "rapidcheck", "arpa/", "netinet/"]
 BENCH_LIBRARIES = ["benchmark/"]
 
 # optics/ compiles to WebAssembly as it stands: no file, no thread, no stream to a device.

@@ -5,6 +5,7 @@
 #include <gtest/gtest.h>
 
 #include <filesystem>
+#include <ostream>
 #include <string>
 
 #include "base/atomic_file.h"
@@ -104,6 +105,8 @@ struct Broken {
   const char* to;
   const char* complaint;
 };
+
+void PrintTo(const Broken& broken, std::ostream* out) { *out << broken.complaint; }
 
 class BrokenTrack : public ::testing::TestWithParam<Broken> {};
 
