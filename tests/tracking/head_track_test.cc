@@ -3,6 +3,7 @@
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
+#include <unistd.h>
 
 #include <filesystem>
 #include <ostream>
@@ -16,7 +17,10 @@ namespace {
 
 using ::testing::HasSubstr;
 
-std::string TemporaryPath(const std::string& name) { return ::testing::TempDir() + name; }
+// Tests run side by side, each in a process of its own.
+std::string TemporaryPath(const std::string& name) {
+  return ::testing::TempDir() + std::to_string(getpid()) + "-" + name;
+}
 
 HeadTrack SmallTrack() {
   HeadTrack track;
