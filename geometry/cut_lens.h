@@ -22,7 +22,7 @@ struct CutOptions {
   double bevel_angle_deg = 115;          // between the flanks
   std::optional<double> bevel_position;  // apex, fraction of the edge from the front; absent: the
                                          // one in 0.25..0.5 that fits the groove best
-  double blank_diameter_mm = 80;         // centred on the optical centre
+  double blank_diameter_mm = 85;         // centred on the optical centre
   double min_edge_mm = 0.5;              // thinner, and the rim cannot hold the lens
   double element_mm = 1.5;               // greatest edge of the mesh's triangles inside
   int edge_points = 360;                 // of the mesh around the edge

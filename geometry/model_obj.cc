@@ -40,7 +40,7 @@ class ObjParser {
     if (key == "o" || key == "g") {
       Begin(std::string(NextWord(line)));
     } else if (key == "usemtl") {
-      model_.parts.back().mesh.triangles.empty() ? void() : Begin(model_.parts.back().name);
+      if (!model_.parts.back().mesh.empty()) Begin(model_.parts.back().name);
       model_.parts.back().name += " " + std::string(NextWord(line));
     }
     return {};
@@ -51,9 +51,9 @@ class ObjParser {
   }
 
  private:
-  void Begin(const std::string& part) {
+  void Begin(std::string part) {
     if (model_.parts.empty() || !model_.parts.back().mesh.empty()) model_.parts.emplace_back();
-    model_.parts.back().name = part;
+    model_.parts.back().name = std::move(part);
     corners_.clear();
   }
   tl::unexpected<Error> Bad(long number, const std::string& what) const {

@@ -126,6 +126,14 @@ TEST(ParseObj, ReadsPolygonsAndNegativeIndices) {
   EXPECT_NEAR(model->parts[0].mesh.normals[0].z(), 1, 1e-12);
 }
 
+TEST(ParseObj, BeginsAPartAtEachMaterial) {
+  const auto model = ParseObj(
+      "o a\nv 0 0 0\nv 1 0 0\nv 0 1 0\nusemtl steel\nf 1 2 3\nusemtl glass\nf 1 3 2\n", "a.obj");
+  ASSERT_TRUE(model.has_value());
+  ASSERT_EQ(model->parts.size(), 2u);
+  EXPECT_THAT(model->parts[1].name, testing::HasSubstr("glass"));
+}
+
 TEST(ParseObj, NamesTheLineThatIsBroken) {
   const auto far = ParseObj("v 0 0 0\nf 1 2 3\n", "a.obj");
   ASSERT_FALSE(far.has_value());
