@@ -11,6 +11,7 @@
 
 #include "apps/commands.h"
 #include "apps/page_server.h"
+#include "cmake/source_dir.h"
 
 namespace lorgnette {
 namespace {

@@ -5,6 +5,7 @@
 #include <filesystem>
 
 #include "base/progress.h"
+#include "cmake/source_dir.h"
 #include "render/video_io.h"
 #include "tracking/tracker.h"
 

@@ -30,6 +30,12 @@ if(LORGNETTE_WERROR)
 endif()
 target_include_directories(lorgnette_options INTERFACE "${PROJECT_SOURCE_DIR}")
 
+# For whoever includes "cmake/source_dir.h".
+configure_file("${PROJECT_SOURCE_DIR}/cmake/source_dir.h.in"
+               "${PROJECT_BINARY_DIR}/generated/cmake/source_dir.h" @ONLY)
+add_library(lorgnette_source_dir INTERFACE)
+target_include_directories(lorgnette_source_dir INTERFACE "${PROJECT_BINARY_DIR}/generated")
+
 # Headers that most sources read, compiled once: for the libraries and for the tests. A source names
 # its includes all the same, and scripts/check compiles it without.
 if(LORGNETTE_PCH)
@@ -71,9 +77,8 @@ function(lorgnette_module name)
   if(LORGNETTE_TESTS AND test_sources)
     add_executable(${name}_tests ${test_sources})
     target_link_libraries(${name}_tests PRIVATE lorgnette_${name} ${ARG_PRIVATE} lorgnette_options
-                                                GTest::gmock GTest::gtest_main)
-    target_compile_definitions(${name}_tests PRIVATE
-                               LORGNETTE_SOURCE_DIR="${PROJECT_SOURCE_DIR}")
+                                                lorgnette_source_dir GTest::gmock
+                                                GTest::gtest_main)
     if(LORGNETTE_PCH)
       target_precompile_headers(${name}_tests REUSE_FROM lorgnette_pch_tests)
     endif()

@@ -7,6 +7,7 @@
 #include <system_error>
 
 #include "base/atomic_file.h"
+#include "cmake/source_dir.h"
 #include "geometry/frame_import.h"
 #include "geometry/model_file.h"
 #include "geometry/parametric_frame.h"
@@ -38,7 +39,7 @@ std::string DataDirectory() {
       if (HasFrames(beside)) return beside.lexically_normal().string();
     }
   }
-  return LORGNETTE_DATA_DIR;
+  return LORGNETTE_SOURCE_DIR "/data";
 }
 
 Result<std::vector<ShippedFrame>> ListShippedFrames() {

@@ -3,6 +3,7 @@
 #include <cmath>
 
 #include "base/units.h"
+#include "cmake/source_dir.h"
 #include "tests/apps/program_test_util.h"
 
 namespace lorgnette {

@@ -14,6 +14,7 @@
 
 #include "apps/program.h"
 #include "base/atomic_file.h"
+#include "cmake/source_dir.h"
 
 namespace lorgnette {
 

@@ -6,6 +6,7 @@
 #include <csignal>
 #include <limits>
 
+#include "cmake/source_dir.h"
 #include "render/image_io.h"
 #include "render/video_io.h"
 #include "tests/apps/program_test_util.h"

@@ -8,6 +8,7 @@
 #include <filesystem>
 #include <sstream>
 
+#include "cmake/source_dir.h"
 #include "geometry/closed_curve.h"
 #include "geometry/contour.h"
 #include "geometry/frame_axes.h"

@@ -9,6 +9,7 @@
 
 #include "base/atomic_file.h"
 #include "base/units.h"
+#include "cmake/source_dir.h"
 #include "geometry/closed_curve.h"
 #include "geometry/frame_io.h"
 

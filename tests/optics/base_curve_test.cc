@@ -8,6 +8,8 @@
 #include <fstream>
 #include <sstream>
 
+#include "cmake/source_dir.h"
+
 namespace lorgnette {
 namespace {
 

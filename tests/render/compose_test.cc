@@ -8,6 +8,7 @@
 #include <filesystem>
 
 #include "base/atomic_file.h"
+#include "cmake/source_dir.h"
 #include "render/image_io.h"
 
 namespace lorgnette {

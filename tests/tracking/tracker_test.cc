@@ -10,6 +10,7 @@
 #include <opencv2/imgcodecs.hpp>
 #include <opencv2/imgproc.hpp>
 
+#include "cmake/source_dir.h"
 #include "tests/tracking/synthetic_face.h"
 
 namespace lorgnette {
