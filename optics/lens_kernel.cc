@@ -3,6 +3,7 @@
 
 #include <array>
 #include <cmath>
+#include <memory>
 #include <type_traits>
 #include <variant>
 
@@ -360,6 +361,57 @@ void SetProgressive(const ProgressiveSurface& s, FaceParams<T>& f) {
   }
 }
 
+double MeanCurvature(const Surface& surface) { return 0.5 * surface.VertexCurvature().trace(); }
+
+// Coefficients of a grid as the kernel's numbers. The last two grids are kept, with what they
+// belong to, so that an address cannot come to mean another grid.
+template <typename T>
+const T* CoefficientsOf(const std::shared_ptr<const SplineGrid>& grid) {
+  if constexpr (std::is_same_v<T, double>) {
+    return grid->coefficients.data();
+  } else {
+    struct Kept {
+      std::shared_ptr<const SplineGrid> grid;
+      Eigen::MatrixXf coefficients;
+    };
+    thread_local std::array<Kept, 2> kept;
+    thread_local std::size_t oldest = 0;
+    for (const Kept& k : kept) {
+      if (k.grid == grid) return k.coefficients.data();
+    }
+    Kept& made = kept[oldest];
+    oldest = 1 - oldest;
+    made = {grid, grid->coefficients.cast<float>()};
+    return made.coefficients.data();
+  }
+}
+
+template <typename T>
+void SetGrid(const Surface& surface, const GridSurface& s, FaceParams<T>& f) {
+  const SplineGrid& grid = *s.grid;
+  f.kind = FaceKind::kGrid;
+  f.c = static_cast<T>(MeanCurvature(surface));
+  f.base = static_cast<T>(grid.base_curvature);
+  f.x0 = static_cast<T>(grid.x0);
+  f.y0 = static_cast<T>(grid.y0);
+  f.per_x = static_cast<T>(1 / grid.pitch_x);
+  f.per_y = static_cast<T>(1 / grid.pitch_y);
+  f.nx = static_cast<T>(grid.nx());
+  f.ny = static_cast<T>(grid.ny());
+  f.coefficients = CoefficientsOf<T>(s.grid);
+}
+
+template <typename T>
+void SetAtoroid(const Surface& surface, const AtoroidSurface& s, FaceParams<T>& f) {
+  f.kind = FaceKind::kAtoroid;
+  f.c = static_cast<T>(MeanCurvature(surface));
+  f.generator = static_cast<T>(s.curvature_generator);
+  f.across = static_cast<T>(s.curvature_across);
+  f.conic = static_cast<T>(1 + s.conic_generator);
+  f.conic_across = static_cast<T>(1 + s.conic_across);
+  f.even[0] = static_cast<T>(s.a4_generator);
+}
+
 // `rotation` turns the surface's own axes into the lens frame's.
 template <typename T>
 FaceParams<T> ParamsOf(const Surface& surface, double vertex_z, const Eigen::Matrix3d& rotation) {
@@ -384,6 +436,11 @@ FaceParams<T> ParamsOf(const Surface& surface, double vertex_z, const Eigen::Mat
   } else if (const auto* progressive = std::get_if<ProgressiveSurface>(&surface.shape())) {
     SetProgressive(*progressive, f);
     angle += progressive->angle();
+  } else if (const auto* atoroid = std::get_if<AtoroidSurface>(&surface.shape())) {
+    SetAtoroid(surface, *atoroid, f);
+    angle = atoroid->generator_angle;
+  } else if (const auto* grid = std::get_if<GridSurface>(&surface.shape())) {
+    SetGrid(surface, *grid, f);
   }
   const double co = std::cos(angle), si = std::sin(angle);
   const auto set = [](T& x, T& y, T& z, const Eigen::Vector3d& v) {
@@ -404,11 +461,7 @@ FaceParams<T> ParamsOf(const Lens& lens, LensFace face) {
 }
 
 bool HasSimdForm(const Surface& surface) {
-  const auto& shape = surface.shape();
-  return std::holds_alternative<SphereSurface>(shape) ||
-         std::holds_alternative<TorusSurface>(shape) ||
-         std::holds_alternative<ConicSurface>(shape) ||
-         std::holds_alternative<ProgressiveSurface>(shape);
+  return !std::holds_alternative<BifocalSurface>(surface.shape());
 }
 
 template <typename T>

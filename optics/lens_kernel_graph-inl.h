@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// Rays and a surface given as a graph z = sag(u, v) with its gradient: conics with even terms, and
-// the progressive surface. Newton from the vertex sphere; compiled for every instruction set.
+// Rays and a surface given as a graph z = sag(u, v) with its gradient: conics with even terms, the
+// progressive surface, atoroids and spline grids. Newton from the vertex sphere; compiled for every
+// instruction set.
 
 // Highway's own guard: this header is included again for every target.
 #if defined(LORGNETTE_OPTICS_LENS_KERNEL_GRAPH_INL_H_) == defined(HWY_TARGET_TOGGLE)
@@ -122,6 +123,95 @@ HWY_INLINE GraphJet<D> ProgressiveJet(D d, const FaceParams<T>& f, hn::Vec<D> u,
   return jet;
 }
 
+// Atoroid: a conic with a v^4 term, swept along conics across; see AtoroidSurface.
+template <class D, class T = hn::TFromD<D>>
+HWY_INLINE GraphJet<D> AtoroidJet(D d, const FaceParams<T>& f, hn::Vec<D> u, hn::Vec<D> v) {
+  const auto one = hn::Set(d, 1), c = hn::Set(d, f.generator), a4 = hn::Set(d, f.even[0]);
+  const auto v2 = hn::Mul(v, v), u2 = hn::Mul(u, u);
+  const auto room_v = hn::NegMulAdd(hn::Set(d, f.conic * f.generator * f.generator), v2, one);
+  const auto e = RootOf(d, room_v);
+  const auto g = hn::MulAdd(hn::Mul(a4, v2), v2, hn::Div(hn::Mul(c, v2), hn::Add(one, e)));
+  const auto g1 = hn::Mul(v, hn::MulAdd(hn::Mul(hn::Set(d, T(4)), a4), v2, hn::Div(c, e)));
+  const auto scale = hn::NegMulAdd(hn::Set(d, f.across), g, one);
+  const auto k = hn::Div(hn::Set(d, f.across), hn::Max(scale, hn::Set(d, T(kLeastSquaredCosine))));
+  const auto k1 = hn::Mul(hn::Mul(k, k), g1);
+  const auto room_u = hn::NegMulAdd(hn::Mul(hn::Set(d, f.conic_across), hn::Mul(k, k)), u2, one);
+  const auto eu = RootOf(d, room_u);
+  const auto inverse = hn::Div(one, hn::Mul(eu, hn::Add(one, eu)));
+  GraphJet<D> jet;
+  jet.room = hn::Min(hn::Min(room_v, room_u), scale);
+  jet.z = hn::MulAdd(hn::Mul(k, u2), hn::Mul(eu, inverse), g);
+  jet.zu = hn::Mul(hn::Mul(k, u), hn::Mul(hn::Add(one, eu), inverse));
+  jet.zv = hn::MulAdd(k1, hn::Mul(u2, inverse), g1);
+  return jet;
+}
+
+// The four cubic B-splines over a cell and their slopes.
+template <class D>
+struct SplineBasis {
+  hn::Vec<D> b[4], b1[4];
+
+  HWY_INLINE SplineBasis(D d, hn::Vec<D> u) {
+    using T = hn::TFromD<D>;
+    const auto one = hn::Set(d, 1), two = hn::Set(d, T(2)), three = hn::Set(d, T(3));
+    const auto sixth = hn::Set(d, T(1) / 6), four = hn::Set(d, T(4)), half = hn::Set(d, T(0.5));
+    const auto v = hn::Sub(one, u), u2 = hn::Mul(u, u), v2 = hn::Mul(v, v);
+    b[0] = hn::Mul(sixth, hn::Mul(v2, v));
+    b[1] = hn::Mul(sixth, hn::MulAdd(hn::Mul(three, u2), hn::Sub(u, two), four));
+    b[2] = hn::Mul(sixth, hn::MulAdd(hn::Mul(three, v2), hn::Sub(v, two), four));
+    b[3] = hn::Mul(sixth, hn::Mul(u2, u));
+    const auto slope = hn::Set(d, T(1.5));
+    b1[0] = hn::Neg(hn::Mul(half, v2));
+    b1[1] = hn::Mul(u, hn::MulSub(slope, u, two));
+    b1[2] = hn::Neg(hn::Mul(v, hn::MulSub(slope, v, two)));
+    b1[3] = hn::Mul(half, u2);
+  }
+};
+
+// Bicubic spline on a sphere. Beyond the grid the last cell goes on, without room.
+template <class D, class T = hn::TFromD<D>>
+HWY_INLINE GraphJet<D> GridJet(D d, const FaceParams<T>& f, hn::Vec<D> u, hn::Vec<D> v) {
+  const auto zero = hn::Zero(d), one = hn::Set(d, 1), base = hn::Set(d, f.base);
+  const auto gx = hn::Mul(hn::Sub(u, hn::Set(d, f.x0)), hn::Set(d, f.per_x));
+  const auto gy = hn::Mul(hn::Sub(v, hn::Set(d, f.y0)), hn::Set(d, f.per_y));
+  const auto last_x = hn::Set(d, f.nx - 2), last_y = hn::Set(d, f.ny - 2);
+  // A coordinate that is no number goes to the first cell.
+  const auto cell = [&](hn::Vec<D> at, hn::Vec<D> last) {
+    const auto kept = hn::IfThenElseZero(hn::Ge(at, zero), at);
+    return hn::Min(hn::Floor(kept), last);
+  };
+  const auto i = cell(gx, last_x), j = cell(gy, last_y);
+  const auto margin = hn::Min(hn::Min(gx, hn::Sub(hn::Add(last_x, one), gx)),
+                              hn::Min(gy, hn::Sub(hn::Add(last_y, one), gy)));
+  const SplineBasis<D> bx(d, hn::Sub(gx, i)), by(d, hn::Sub(gy, j));
+  const std::size_t stride = std::size_t(f.nx) + 2;
+  const hn::Rebind<hwy::MakeSigned<T>, D> di;
+  const auto index = hn::ConvertTo(di, hn::MulAdd(j, hn::Set(d, T(stride)), i));
+  auto z = zero, zx = zero, zy = zero;
+  for (std::size_t b = 0; b < 4; ++b) {
+    auto along = zero, slope = zero;
+    for (std::size_t a = 0; a < 4; ++a) {
+      const auto c = hn::GatherIndex(d, f.coefficients + a + b * stride, index);
+      along = hn::MulAdd(bx.b[a], c, along);
+      slope = hn::MulAdd(bx.b1[a], c, slope);
+    }
+    z = hn::MulAdd(by.b[b], along, z);
+    zx = hn::MulAdd(by.b[b], slope, zx);
+    zy = hn::MulAdd(by.b1[b], along, zy);
+  }
+  const auto r2 = hn::MulAdd(u, u, hn::Mul(v, v));
+  const auto e2 = hn::NegMulAdd(hn::Mul(base, base), r2, one);
+  const auto e = RootOf(d, e2);
+  const auto slope = hn::Div(base, e);
+  GraphJet<D> jet;
+  // On the grid up to and with its last node.
+  jet.room = hn::IfThenElse(hn::Ge(margin, zero), e2, hn::Set(d, T(-1)));
+  jet.z = hn::Add(z, hn::Div(hn::Mul(base, r2), hn::Add(one, e)));
+  jet.zu = hn::MulAdd(zx, hn::Set(d, f.per_x), hn::Mul(slope, u));
+  jet.zv = hn::MulAdd(zy, hn::Set(d, f.per_y), hn::Mul(slope, v));
+  return jet;
+}
+
 // Any surface with any axis.
 template <class D>
 struct AnyFace {
@@ -144,7 +234,10 @@ struct AnyFace {
 
  private:
   HWY_INLINE GraphJet<D> JetAt(V u, V v) const {
-    return f.kind == FaceKind::kConic ? ConicJet(d, f, u, v) : ProgressiveJet(d, f, u, v);
+    if (f.kind == FaceKind::kConic) return ConicJet(d, f, u, v);
+    if (f.kind == FaceKind::kAtoroid) return AtoroidJet(d, f, u, v);
+    if (f.kind == FaceKind::kGrid) return GridJet(d, f, u, v);
+    return ProgressiveJet(d, f, u, v);
   }
 
   HWY_INLINE FaceHit<D> IntersectGraph(const Vec3<D>& p, const Vec3<D>& dir) const {

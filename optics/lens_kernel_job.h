@@ -9,7 +9,7 @@
 
 namespace lorgnette::kernel {
 
-enum class FaceKind { kSphere, kTorus, kConic, kProgressive };
+enum class FaceKind { kSphere, kTorus, kConic, kProgressive, kAtoroid, kGrid };
 
 // Chebyshev coefficients of the sag along a progressive corridor.
 inline constexpr std::size_t kCorridorTerms = 24;
@@ -23,7 +23,7 @@ struct FaceParams {
   bool tilted = false;  // a is not (0, 0, 1)
   T vertex_z = 0;       // mm
   T c = 0;              // 1/mm: of the sphere, of the torus across its generator, of the conic's
-                        // vertex, of the progressive's far zone
+                        // vertex, of the progressive's far zone, mean one of atoroid and grid
   T generator = 0;      // torus: curvature of the generator, 1/mm
   T delta = 0;          // torus: generator - c
   T ax = 0, ay = 0, az = 1;
@@ -35,6 +35,12 @@ struct FaceParams {
   T end_sine = 0;                            // sine of the umbilic's slope where the corridor ends
   T end_sag = 0;                             // sag where it ends, mm
   std::array<T, kCorridorTerms> corridor{};  // sag inside it, in u = (start - y) / length
+  T across = 0, conic_across = 1;            // atoroid: curvature across, 1 + k there; `conic`,
+                                             // `generator` and even[0] are the generator's
+  T base = 0;                                // grid: curvature of the sphere beneath, 1/mm
+  T x0 = 0, y0 = 0, per_x = 1, per_y = 1;    // grid: first node, mm; nodes a mm
+  T nx = 0, ny = 0;                          // grid: nodes each way
+  const T* coefficients = nullptr;           // grid: (nx + 2) x (ny + 2), x running fastest
 };
 
 template <typename T>

@@ -4,6 +4,7 @@
 
 #include <Eigen/Core>
 #include <cmath>
+#include <memory>
 #include <random>
 #include <vector>
 
@@ -47,6 +48,35 @@ Lens ProgressiveFront() {
   return lens;
 }
 
+// A sphere with a ripple on 61 x 61 nodes, as a soft progressive or a measured surface has them.
+Lens GridFront() {
+  constexpr int kNodes = 61;
+  Eigen::MatrixXd sag(kNodes, kNodes);
+  for (int i = 0; i < kNodes; ++i) {
+    for (int j = 0; j < kNodes; ++j) {
+      const double x = i - 30.0, y = j - 30.0;
+      sag(i, j) = Surface(SphereSurface{5.0 / 600}).Jet(x, y)->z +
+                  0.02 * (1 - std::cos(x / 8)) * std::cos(y / 11);
+    }
+  }
+  Lens lens = SpherePair();
+  lens.front = Surface(GridSurface{
+      std::make_shared<SplineGrid>(SplineGrid::Through(sag, -30, -30, 1, 1, 5.0 / 600))});
+  return lens;
+}
+
+Lens AtoroidBack() {
+  Lens lens = SpherePair();
+  AtoroidSurface s;
+  s.curvature_generator = 1 / 54.47;
+  s.curvature_across = 1 / 74.86;
+  s.conic_across = -0.7;
+  s.a4_generator = 2e-7;
+  s.generator_angle = 2.1;
+  lens.back = Surface(s);
+  return lens;
+}
+
 // Camera rays from 500 mm to points up to 25 mm off the axis.
 template <typename T>
 struct Rays {
@@ -85,7 +115,9 @@ void CountErrors(const Lens& lens, const Rays<T>& rays, benchmark::State& state)
     };
     const oracle::Vec from = field(rays.in, 0), way = field(rays.in, 3).normalized();
     oracle::Vec point, exit;
-    if (std::holds_alternative<ProgressiveSurface>(lens.front.shape())) {
+    if (std::holds_alternative<ProgressiveSurface>(lens.front.shape()) ||
+        std::holds_alternative<GridSurface>(lens.front.shape()) ||
+        std::holds_alternative<AtoroidSurface>(lens.back.shape())) {
       // No long double form: the scalar path, good to 1e-14 mm.
       const LensTrace scalar =
           TraceThrough(lens, {from.cast<double>(), way.cast<double>()}, static_cast<T>(kIndex));
@@ -161,6 +193,11 @@ void AsphereFloat(benchmark::State& state) { TraceBatch<float>(state, AsphericFr
 void ProgressiveDouble(benchmark::State& state) { TraceBatch<double>(state, ProgressiveFront()); }
 void ProgressiveFloat(benchmark::State& state) { TraceBatch<float>(state, ProgressiveFront()); }
 void ProgressiveScalar(benchmark::State& state) { TraceScalar(state, ProgressiveFront()); }
+void AtoroidDouble(benchmark::State& state) { TraceBatch<double>(state, AtoroidBack()); }
+void AtoroidFloat(benchmark::State& state) { TraceBatch<float>(state, AtoroidBack()); }
+void GridDouble(benchmark::State& state) { TraceBatch<double>(state, GridFront()); }
+void GridFloat(benchmark::State& state) { TraceBatch<float>(state, GridFront()); }
+void GridScalar(benchmark::State& state) { TraceScalar(state, GridFront()); }
 BENCHMARK(SpherePairDouble)->Name("optics/trace/sphere_pair/double");
 BENCHMARK(SpherePairFloat)->Name("optics/trace/sphere_pair/float");
 BENCHMARK(SpherePairScalar)->Name("optics/trace/sphere_pair/scalar");
@@ -172,6 +209,11 @@ BENCHMARK(AsphereFloat)->Name("optics/trace/asphere/float");
 BENCHMARK(ProgressiveDouble)->Name("optics/trace/progressive/double");
 BENCHMARK(ProgressiveFloat)->Name("optics/trace/progressive/float");
 BENCHMARK(ProgressiveScalar)->Name("optics/trace/progressive/scalar");
+BENCHMARK(AtoroidDouble)->Name("optics/trace/atoroid/double");
+BENCHMARK(AtoroidFloat)->Name("optics/trace/atoroid/float");
+BENCHMARK(GridDouble)->Name("optics/trace/grid/double");
+BENCHMARK(GridFloat)->Name("optics/trace/grid/float");
+BENCHMARK(GridScalar)->Name("optics/trace/grid/scalar");
 
 }  // namespace
 }  // namespace lorgnette

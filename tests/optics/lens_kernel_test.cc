@@ -8,6 +8,7 @@
 #include <cmath>
 #include <cstdio>
 #include <limits>
+#include <memory>
 #include <random>
 #include <vector>
 
@@ -45,6 +46,33 @@ Surface Conic(double curvature, double conic, std::array<double, 4> even) {
   return Surface(s);
 }
 
+// A torus and a ripple, as nodes of a spline, 60 mm across.
+Surface Grid(const TorusSurface& torus, double ripple_mm, double base_curvature) {
+  constexpr int kNodes = 49;
+  constexpr double kPitch = 60.0 / (kNodes - 1);
+  Eigen::MatrixXd sag(kNodes, kNodes);
+  for (int i = 0; i < kNodes; ++i) {
+    for (int j = 0; j < kNodes; ++j) {
+      const double x = -30 + i * kPitch, y = -30 + j * kPitch;
+      sag(i, j) =
+          Surface(torus).Jet(x, y)->z + ripple_mm * (1 - std::cos(x / 8)) * std::cos(y / 11);
+    }
+  }
+  return Surface(GridSurface{std::make_shared<SplineGrid>(
+      SplineGrid::Through(sag, -30, -30, kPitch, kPitch, base_curvature))});
+}
+
+Surface Atoroid(double generator, double across, double angle_deg) {
+  AtoroidSurface s;
+  s.curvature_generator = generator;
+  s.curvature_across = across;
+  s.conic_generator = 0.6;
+  s.conic_across = -0.7;
+  s.a4_generator = 2e-7;
+  s.generator_angle = RadiansFromDegrees(angle_deg);
+  return Surface(s);
+}
+
 // No long double form of these: the scalar path answers for them.
 std::vector<NamedLens> ProgressiveLenses() {
   std::vector<NamedLens> lenses = {
@@ -58,8 +86,18 @@ std::vector<NamedLens> ProgressiveLenses() {
       {"progressive back",
        MakeLens(Sphere(0.012), Surface(ProgressiveSurface(0.008, -0.004, -2, 16)), 2), 1.6},
       {"flat progressive back",
-       MakeLens(Sphere(0.012), Surface(ProgressiveSurface(0, -0.004, 0, 12)), 3), 1.6}};
-  NamedLens prism = lenses[2];
+       MakeLens(Sphere(0.012), Surface(ProgressiveSurface(0, -0.004, 0, 12)), 3), 1.6},
+      {"grid front", MakeLens(Grid({0.011, 0.009, 0}, 0.02, 0), Sphere(0.015), 3), 1.6},
+      {"grid on a sphere, back", MakeLens(Sphere(0.004), Grid({0.013, 0.016, 0}, 0.01, 0.0145), 2),
+       1.5},
+      {"atoroid back", MakeLens(Sphere(1 / 300.0), Atoroid(1 / 54.47, 1 / 74.86, 25), 1.5), 1.6},
+      {"atoroid front", MakeLens(Atoroid(0.012, 0.015, 110), Torus(0.01, 0.012, 40), 4), 1.67}};
+  NamedLens prism = lenses[5];
+  prism.name = "grid with prism";
+  prism.lens.back_tilt_x = -0.03;
+  prism.lens.back_tilt_y = 0.04;
+  lenses.push_back(prism);
+  prism = lenses[2];
   prism.name = "progressive back with prism";
   prism.lens.back_tilt_x = 0.03;
   prism.lens.back_tilt_y = -0.02;
@@ -353,11 +391,13 @@ TEST(LensKernel, ReturnsNoNanWhateverGoesInDouble) { ExpectNoNanWhateverGoesIn<d
 TEST(LensKernel, ReturnsNoNanWhateverGoesInFloat) { ExpectNoNanWhateverGoesIn<float>(); }
 
 TEST(LensKernel, SurfacesWithoutASimdFormGiveTheScalarAnswer) {
-  AtoroidSurface atoroid;
-  atoroid.curvature_generator = 1 / 54.47;
-  atoroid.curvature_across = 1 / 74.86;
-  atoroid.conic_across = -0.7;
-  const Lens lens = MakeLens(Sphere(1 / 300.0), Surface(atoroid), 1.5);
+  BifocalSurface bifocal;
+  bifocal.curvature = 0.012;
+  bifocal.curvature_segment = 0.016;
+  bifocal.center = {2, -9};
+  bifocal.radius = 14;
+  bifocal.top = 5;
+  const Lens lens = MakeLens(Surface(bifocal), Sphere(0.01), 3);
   const std::vector<Ray> rays = TestRays(50, true, 29);
   Batch<double> batch(rays.size());
   for (std::size_t i = 0; i < rays.size(); ++i) batch.Set(i, rays[i]);
