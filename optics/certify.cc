@@ -122,17 +122,19 @@ class Examiner {
 
     const Outline outline = order_.contour_mm.empty() ? Outline::Round(order_.diameter_mm)
                                                       : Outline::FromPolygon(order_.contour_mm);
-    double least = HUGE_VAL;
-    for (const Eigen::Vector2d& p : outline.rim()) {
-      const auto gap = Gap(p);
-      if (!gap) {
-        return Failure(
-            fmt::format("certify: the lens ends before its outline, at ({:.2f}, {:.2f}) "
-                        "mm from the optical centre",
-                        p.x(), p.y()));
-      }
-      least = std::min(least, *gap);
+    std::optional<Eigen::Vector2d> beyond;
+    const auto edge = outline.LeastOnRim([&](double x, double y) {
+      const auto gap = Gap({x, y});
+      if (!gap && !beyond) beyond = Eigen::Vector2d(x, y);
+      return gap;
+    });
+    if (!edge) {
+      return Failure(
+          fmt::format("certify: the lens ends before its outline, at ({:.2f}, {:.2f}) "
+                      "mm from the optical centre",
+                      beyond->x(), beyond->y()));
     }
+    const double least = edge->value;
     if (least < 0) {
       return Failure(fmt::format("certify: the surfaces cross, the edge is {:.3f} mm", least));
     }

@@ -80,10 +80,17 @@ void ReadExtensions(JsonReader& json, FhirPrescription& out) {
     } else if (url == kFhirVertexUrl) {
       out.rx.vertex_distance_mm = extension.Number("valueDecimal", kMinVertex_mm, kMaxVertex_mm);
       out.has_vertex = true;
+    } else if (url == kFhirHeightRightUrl || url == kFhirHeightLeftUrl) {
+      (url == kFhirHeightRightUrl ? out.rx.fitting_height_right_mm
+                                  : out.rx.fitting_height_left_mm) =
+          extension.Number("valueDecimal", kMinFittingHeight_mm, kMaxFittingHeight_mm);
     }
     IgnoreTheRest(extension);
   }
   out.has_pd = pds == 2;
+  if (out.rx.fitting_height_right_mm.has_value() != out.rx.fitting_height_left_mm.has_value()) {
+    json.Fail("extension", "got a fitting height for one eye, want both or none");
+  }
 }
 
 std::string Quoted(const std::string& text) {
@@ -170,15 +177,21 @@ std::string WriteFhir(const Prescription& rx, const FhirHeader& header) {
   const auto extension = [](const char* url, double value) {
     return fmt::format("    {{\"url\": \"{}\", \"valueDecimal\": {}}}", url, value);
   };
+  std::string extensions = fmt::format("{},\n{},\n{}", extension(kFhirPdRightUrl, rx.pd_right_mm),
+                                       extension(kFhirPdLeftUrl, rx.pd_left_mm),
+                                       extension(kFhirVertexUrl, rx.vertex_distance_mm));
+  if (rx.fitting_height_right_mm && rx.fitting_height_left_mm) {
+    extensions += ",\n" + extension(kFhirHeightRightUrl, *rx.fitting_height_right_mm) + ",\n" +
+                  extension(kFhirHeightLeftUrl, *rx.fitting_height_left_mm);
+  }
   return fmt::format(
-      "{{\n  \"resourceType\": \"VisionPrescription\",\n  \"extension\": [\n{},\n{},\n{}\n  ],\n"
+      "{{\n  \"resourceType\": \"VisionPrescription\",\n  \"extension\": [\n{}\n  ],\n"
       "  \"status\": {},\n  \"created\": {},\n  \"patient\": {{\"reference\": {}}},\n"
       "  \"dateWritten\": {},\n  \"prescriber\": {{\"reference\": {}}},\n"
       "  \"lensSpecification\": [\n{},\n{}\n  ]\n}}\n",
-      extension(kFhirPdRightUrl, rx.pd_right_mm), extension(kFhirPdLeftUrl, rx.pd_left_mm),
-      extension(kFhirVertexUrl, rx.vertex_distance_mm), Quoted(header.status),
-      Quoted(header.created), Quoted(header.patient), Quoted(header.date_written),
-      Quoted(header.prescriber), LensText(rx.right, "right"), LensText(rx.left, "left"));
+      extensions, Quoted(header.status), Quoted(header.created), Quoted(header.patient),
+      Quoted(header.date_written), Quoted(header.prescriber), LensText(rx.right, "right"),
+      LensText(rx.left, "left"));
 }
 
 }  // namespace lorgnette

@@ -2,9 +2,9 @@
 // HL7 FHIR VisionPrescription, read and written. R4 and R5 have the same elements for spectacles;
 // R2 and R3 (`dispense`, scalar prism) are refused by name.
 //
-// FHIR has no pupillary or vertex distance: they travel as extensions of the resource under the
-// URLs below (valueDecimal, mm). Elements of no optical meaning are ignored. Source:
-// docs/prescription.md, "FHIR".
+// FHIR has no pupillary or vertex distance and no fitting height: they travel as extensions of the
+// resource under the URLs below (valueDecimal, mm). Elements of no optical meaning are ignored.
+// Source: docs/prescription.md, "FHIR".
 #pragma once
 
 #include <string>
@@ -17,6 +17,8 @@ namespace lorgnette {
 inline constexpr char kFhirPdRightUrl[] = "urn:lorgnette:pupillary-distance-right-mm";
 inline constexpr char kFhirPdLeftUrl[] = "urn:lorgnette:pupillary-distance-left-mm";
 inline constexpr char kFhirVertexUrl[] = "urn:lorgnette:vertex-distance-mm";
+inline constexpr char kFhirHeightRightUrl[] = "urn:lorgnette:fitting-height-right-mm";
+inline constexpr char kFhirHeightLeftUrl[] = "urn:lorgnette:fitting-height-left-mm";
 
 struct FhirPrescription {
   Prescription rx;

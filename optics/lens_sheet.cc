@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "optics/lens_sheet.h"
 
+#include <algorithm>
 #include <cmath>
 #include <limits>
 
@@ -12,8 +13,16 @@ using Eigen::Vector2d;
 
 Vector2d MeridianDirection(double angle) { return {-std::cos(angle), std::sin(angle)}; }
 
-double Radius(double power_D, double index_step) {
-  return power_D == 0 ? std::numeric_limits<double>::infinity() : 1000 * index_step / power_D;
+// A meridian of a cylinder without power has what rounding left of the other one's.
+constexpr double kPlano = 8 * std::numeric_limits<double>::epsilon();
+
+MeridianPair Radii(const MeridianPair& power_D, double index_step) {
+  const double greatest = std::max(std::abs(power_D.along), std::abs(power_D.across));
+  const auto radius = [&](double power) {
+    return std::abs(power) <= kPlano * greatest ? std::numeric_limits<double>::infinity()
+                                                : 1000 * index_step / power;
+  };
+  return {radius(power_D.along), radius(power_D.across)};
 }
 
 }  // namespace
@@ -33,10 +42,8 @@ LensSheet MakeLensSheet(const LensDesign& design, const SheetRequest& request) {
   LensSheet sheet;
   sheet.front_power_D = pair(front);
   sheet.back_power_D = pair(back);
-  sheet.radius_front_mm = {Radius(sheet.front_power_D.along, n - 1),
-                           Radius(sheet.front_power_D.across, n - 1)};
-  sheet.radii_back_mm = {Radius(sheet.back_power_D.along, 1 - n),
-                         Radius(sheet.back_power_D.across, 1 - n)};
+  sheet.radius_front_mm = Radii(sheet.front_power_D, n - 1);
+  sheet.radii_back_mm = Radii(sheet.back_power_D, 1 - n);
   sheet.back_vertex_power_D = pair(system.BackVertexPower());
   sheet.front_vertex_power_D = pair(system.FrontVertexPower());
   sheet.equivalent_power_D = pair(system.EquivalentPower());
@@ -54,6 +61,7 @@ LensSheet MakeLensSheet(const LensDesign& design, const SheetRequest& request) {
   sheet.edge_thickness_min_mm = design.min_edge_thickness_mm;
   sheet.edge_thickness_max_mm = design.max_edge_thickness_mm;
   sheet.mass_g = design.mass_g;
+  sheet.min_blank_mm = design.min_blank_mm;
 
   sheet.pupil_mm = design.order.vertex_distance_mm + kEntrancePupilDepth_mm;
   sheet.shape_factor = {ShapeFactor(f_along, t, n), ShapeFactor(f_across, t, n)};

@@ -39,6 +39,7 @@ struct LensSheet {
   double center_thickness_mm = 0;
   double edge_thickness_min_mm = 0, edge_thickness_max_mm = 0;  // over the contour, axial
   double mass_g = 0;
+  double min_blank_mm = 0;  // diameter about the optical centre, allowance included
 
   // Distant object, entrance pupil at the order's vertex distance + kEntrancePupilDepth_mm.
   double pupil_mm = 0;

@@ -40,7 +40,19 @@ Outline Outline::Round(double diameter_mm) {
     outline.spokes_.push_back({end, r * r * 2 * kPi / kCircleSpokes});
   }
   outline.radius_mm_ = r;
+  outline.round_ = true;
   return outline;
+}
+
+Eigen::Vector2d Outline::RimAt(double at) const {
+  const double n = double(rim_.size());
+  const double floor = std::floor(at), fraction = at - floor;
+  if (round_) {
+    const double phi = 2 * kPi * at / n;
+    return radius_mm_ * Eigen::Vector2d(std::cos(phi), std::sin(phi));
+  }
+  const auto i = std::size_t(floor - n * std::floor(floor / n));
+  return rim_[i] + fraction * (rim_[(i + 1) % rim_.size()] - rim_[i]);
 }
 
 Outline Outline::FromPolygon(const std::vector<Eigen::Vector2d>& contour_mm) {
@@ -81,20 +93,19 @@ std::optional<double> AxialThickness(const Lens& lens, double x, double y) {
 }
 
 std::optional<EdgeThickness> EdgeOver(const Lens& lens, const Outline& outline) {
+  const auto thickness = [&](double x, double y) { return AxialThickness(lens, x, y); };
+  const auto thinness = [&](double x, double y) {
+    const auto t = AxialThickness(lens, x, y);
+    return t ? std::optional(-*t) : std::nullopt;
+  };
+  const auto least = outline.LeastOnRim(thickness), greatest = outline.LeastOnRim(thinness);
+  if (!least || !greatest) return std::nullopt;
   EdgeThickness edge;
-  edge.least_mm = edge.least_inside_mm = HUGE_VAL;
-  edge.greatest_mm = -HUGE_VAL;
+  edge.least_mm = edge.least_inside_mm = least->value;
+  edge.least_at = least->at;
+  edge.greatest_mm = -greatest->value;
+  edge.greatest_at = greatest->at;
   for (const Eigen::Vector2d& p : outline.rim()) {
-    const auto t = AxialThickness(lens, p.x(), p.y());
-    if (!t) return std::nullopt;
-    if (*t < edge.least_mm) {
-      edge.least_mm = *t;
-      edge.least_at = p;
-    }
-    if (*t > edge.greatest_mm) {
-      edge.greatest_mm = *t;
-      edge.greatest_at = p;
-    }
     for (int ring = 1; ring < kRings; ++ring) {
       const Eigen::Vector2d q = p * (double(ring) / kRings);
       const auto inside = AxialThickness(lens, q.x(), q.y());
@@ -102,7 +113,6 @@ std::optional<EdgeThickness> EdgeOver(const Lens& lens, const Outline& outline) 
       edge.least_inside_mm = std::min(edge.least_inside_mm, *inside);
     }
   }
-  edge.least_inside_mm = std::min(edge.least_inside_mm, edge.least_mm);
   return edge;
 }
 

@@ -4,12 +4,19 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <cmath>
 #include <optional>
 #include <vector>
 
 #include "optics/lens.h"
 
 namespace lorgnette {
+
+// A value of some function on a rim, and where.
+struct RimValue {
+  double value = 0;
+  Eigen::Vector2d at{0, 0};
+};
 
 class Outline {
  public:
@@ -21,6 +28,13 @@ class Outline {
   // Points on the outline.
   const std::vector<Eigen::Vector2d>& rim() const { return rim_; }
   double radius_mm() const { return radius_mm_; }  // farthest rim point from the optical centre
+  // Between the points: `at` counts them, fractions run along the circle or the polygon's edge.
+  Eigen::Vector2d RimAt(double at) const;
+
+  // Least value of f(x, y) on the rim: over its points, then by golden sections between the two
+  // neighbours of the least. nullopt where f has no value at a point.
+  template <typename F>
+  std::optional<RimValue> LeastOnRim(F&& f) const;
 
   // Integral over the area of f(x, y), by Gauss-Legendre along each spoke. Exact in angle for a
   // circle to rounding, and for a polygon to the order of the rule.
@@ -53,12 +67,54 @@ class Outline {
   std::vector<Eigen::Vector2d> rim_;
   std::vector<Spoke> spokes_;
   double radius_mm_ = 0;
+  bool round_ = false;
 };
+
+template <typename F>
+std::optional<RimValue> Outline::LeastOnRim(F&& f) const {
+  constexpr double kGolden = 0.6180339887498949;
+  constexpr int kSections = 40;  // 2 points apart, then 1e-8 of that: the value is flat there
+  std::optional<RimValue> least;
+  double i_least = 0;
+  for (std::size_t i = 0; i < rim_.size(); ++i) {
+    const std::optional<double> value = f(rim_[i].x(), rim_[i].y());
+    if (!value) return std::nullopt;
+    if (least && !(*value < least->value)) continue;
+    least = RimValue{*value, rim_[i]};
+    i_least = double(i);
+  }
+  const auto try_at = [&](double i) {
+    const Eigen::Vector2d p = RimAt(i);
+    const std::optional<double> value = f(p.x(), p.y());
+    if (value && *value < least->value) least = RimValue{*value, p};
+    return value ? *value : HUGE_VAL;
+  };
+  double low = i_least - 1, high = i_least + 1;
+  double a = high - kGolden * (high - low), b = low + kGolden * (high - low);
+  double fa = try_at(a), fb = try_at(b);
+  for (int k = 0; k < kSections; ++k) {
+    if (fa < fb) {
+      high = b;
+      b = a;
+      fb = fa;
+      a = high - kGolden * (high - low);
+      fa = try_at(a);
+    } else {
+      low = a;
+      a = b;
+      fa = fb;
+      b = low + kGolden * (high - low);
+      fb = try_at(b);
+    }
+  }
+  return least;
+}
 
 // Distance along the axis from the front to the back surface over (x, y) of the lens frame;
 // negative where they have crossed, nullopt where one of them has ended.
 std::optional<double> AxialThickness(const Lens& lens, double x, double y);
 
+// Extremes between the outline's points too, to rounding.
 struct EdgeThickness {
   double least_mm = 0, greatest_mm = 0;
   double least_inside_mm = 0;  // over the rim and seven rings inside it

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "optics/prescription.h"
 
+#include <fmt/format.h>
+
 #include "base/json_reader.h"
 
 namespace lorgnette {
@@ -50,7 +52,40 @@ EyePrescription ReadEye(JsonReader json) {
   return eye;
 }
 
+std::string EyeText(const EyePrescription& eye) {
+  std::string text = fmt::format("{{\"sphere\": {}", eye.sphere.value());
+  const auto add = [&](const char* key, double value) {
+    if (value != 0) text += fmt::format(", \"{}\": {}", key, value);
+  };
+  add("cylinder", eye.cylinder.value());
+  if (eye.cylinder != Diopters(0)) add("axis", eye.axis.value());
+  add("add", eye.add.value());
+  add("prism_in", eye.prism_in.value());
+  add("prism_up", eye.prism_up.value());
+  return text + "}";
+}
+
+// One number where both eyes have the same.
+std::string BothText(double right, double left) {
+  return right == left ? fmt::format("{}", right)
+                       : fmt::format("{{\"right\": {}, \"left\": {}}}", right, left);
+}
+
 }  // namespace
+
+std::string WritePrescription(const Prescription& rx) {
+  // A binocular PD is the sum; doubling is exact.
+  const std::string pd = rx.pd_right_mm == rx.pd_left_mm ? fmt::format("{}", rx.pd_mm())
+                                                         : BothText(rx.pd_right_mm, rx.pd_left_mm);
+  std::string text =
+      fmt::format("{{\n  \"OD\": {},\n  \"OS\": {},\n  \"PD\": {},\n  \"vertex_distance\": {}",
+                  EyeText(rx.right), EyeText(rx.left), pd, rx.vertex_distance_mm);
+  if (rx.fitting_height_right_mm && rx.fitting_height_left_mm) {
+    text += ",\n  \"fitting_height\": " +
+            BothText(*rx.fitting_height_right_mm, *rx.fitting_height_left_mm);
+  }
+  return text + "\n}\n";
+}
 
 Result<Prescription> ParsePrescription(const std::string& json_text, const std::string& name) {
   LG_ASSIGN(JsonReader json, JsonReader::Parse(json_text, name));
@@ -66,6 +101,14 @@ Result<Prescription> ParsePrescription(const std::string& json_text, const std::
   }
   rx.vertex_distance_mm =
       json.NumberOr("vertex_distance", rx.vertex_distance_mm, kMinVertex_mm, kMaxVertex_mm);
+  if (json.IsObject("fitting_height")) {
+    JsonReader height = json.Object("fitting_height");
+    rx.fitting_height_right_mm = height.Number("right", kMinFittingHeight_mm, kMaxFittingHeight_mm);
+    rx.fitting_height_left_mm = height.Number("left", kMinFittingHeight_mm, kMaxFittingHeight_mm);
+  } else if (json.Has("fitting_height")) {
+    rx.fitting_height_right_mm = rx.fitting_height_left_mm =
+        json.Number("fitting_height", kMinFittingHeight_mm, kMaxFittingHeight_mm);
+  }
   LG_RETURN_IF_ERROR(json.Finish());
   return rx;
 }

@@ -41,6 +41,8 @@ TEST(Fhir, RoundTrips) {
   rx.pd_right_mm = 31.5;
   rx.pd_left_mm = 32;
   rx.vertex_distance_mm = 12;
+  rx.fitting_height_right_mm = 21.5;
+  rx.fitting_height_left_mm = 22;
   const std::string text = WriteFhir(rx, Header());
   EXPECT_THAT(text, HasSubstr("\"sphere\": -2.00, \"cylinder\": -0.50, \"axis\": 180"));
   const auto back = ParseFhir(text, "again.json");
@@ -48,6 +50,8 @@ TEST(Fhir, RoundTrips) {
   EXPECT_TRUE(back->has_pd && back->has_vertex);
   EXPECT_EQ(back->rx.pd_right_mm, 31.5);
   EXPECT_EQ(back->rx.vertex_distance_mm, 12);
+  EXPECT_EQ(back->rx.fitting_height_right_mm, 21.5);
+  EXPECT_EQ(back->rx.fitting_height_left_mm, 22);
   EXPECT_EQ(back->rx.right.prism_up, rx.right.prism_up);
   EXPECT_EQ(back->rx.left.prism_in, rx.left.prism_in);
   EXPECT_EQ(back->rx.right.axis, rx.right.axis);

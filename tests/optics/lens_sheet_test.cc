@@ -5,6 +5,8 @@
 
 #include <cmath>
 
+#include "optics/power_vector.h"
+
 namespace lorgnette {
 namespace {
 
@@ -75,6 +77,24 @@ TEST(MakeLensSheet, GivesAPlanoSurfaceAnInfiniteRadiusAndAnAfocalLensNoFocus) {
   EXPECT_TRUE(std::isinf(sheet.radius_front_mm.along));
   EXPECT_FALSE(sheet.cardinal_along);
   EXPECT_EQ(sheet.spectacle_magnification.along, 1);
+}
+
+// The extremes of an edge lie in the principal meridians, wherever those lie between the points at
+// which the rim is sampled.
+TEST(EdgeOver, FindsExtremesBetweenThePointsOfTheRim) {
+  for (const double axis : {1.0, 30.7, 89.1, 160.37}) {
+    LensOrder order;
+    order.rx = {Diopters(-4), Diopters(-3), AxisDegrees(axis), {}, {}, {}};
+    order.diameter_mm = 50;
+    const auto design = DesignLens(order);
+    ASSERT_TRUE(design);
+    const Eigen::Vector2d along = 25 * LensFrameDirection(AxisDegrees(axis));
+    const double thin = *AxialThickness(design->lens, along.x(), along.y());
+    const double thick = *AxialThickness(design->lens, -along.y(), along.x());
+    constexpr double kRounding_mm = 1e-13;
+    EXPECT_NEAR(design->min_edge_thickness_mm, thin, kRounding_mm) << axis;
+    EXPECT_NEAR(design->max_edge_thickness_mm, thick, kRounding_mm) << axis;
+  }
 }
 
 }  // namespace

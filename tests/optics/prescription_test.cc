@@ -71,5 +71,50 @@ TEST(ParsePrescription, TakesAxisZeroAsOneEighty) {
   EXPECT_EQ(rx->right.axis, rx->left.axis);
 }
 
+TEST(WritePrescription, ComesBackToTheLastBit) {
+  Prescription rx;
+  rx.right = {Diopters(-4.3125), Diopters(0.1),       AxisDegrees(160.3),
+              Diopters(2),       PrismDiopters(-1.1), PrismDiopters(0.7)};
+  rx.left.sphere = Diopters(1.0 / 3);
+  rx.pd_right_mm = 31.7;
+  rx.pd_left_mm = 32.1;
+  rx.vertex_distance_mm = 12.4;
+  rx.fitting_height_right_mm = 21.5;
+  rx.fitting_height_left_mm = 22;
+  for (const bool equal : {false, true}) {
+    if (equal) {
+      rx.pd_left_mm = rx.pd_right_mm;
+      rx.fitting_height_left_mm = rx.fitting_height_right_mm;
+    }
+    const auto back = ParsePrescription(WritePrescription(rx), "again.json");
+    ASSERT_TRUE(back) << back.error().message;
+    EXPECT_EQ(back->right.sphere, rx.right.sphere);
+    EXPECT_EQ(back->right.cylinder, rx.right.cylinder);
+    EXPECT_EQ(back->right.axis, rx.right.axis);
+    EXPECT_EQ(back->right.add, rx.right.add);
+    EXPECT_EQ(back->right.prism_in, rx.right.prism_in);
+    EXPECT_EQ(back->right.prism_up, rx.right.prism_up);
+    EXPECT_EQ(back->left.sphere, rx.left.sphere);
+    EXPECT_EQ(back->left.cylinder, Diopters(0));
+    EXPECT_EQ(back->pd_right_mm, rx.pd_right_mm);
+    EXPECT_EQ(back->pd_left_mm, rx.pd_left_mm);
+    EXPECT_EQ(back->vertex_distance_mm, rx.vertex_distance_mm);
+    EXPECT_EQ(back->fitting_height_right_mm, rx.fitting_height_right_mm);
+    EXPECT_EQ(back->fitting_height_left_mm, rx.fitting_height_left_mm);
+  }
+}
+
+TEST(ParsePrescription, ReadsOneFittingHeightForBothEyes) {
+  const char* text =
+      R"({"OD": {"sphere": 1}, "OS": {"sphere": 1}, "PD": 62, "fitting_height": 21})";
+  const auto rx = ParsePrescription(text, "rx.json");
+  ASSERT_TRUE(rx);
+  EXPECT_EQ(rx->fitting_height_right_mm, 21);
+  EXPECT_EQ(rx->fitting_height_left_mm, 21);
+  EXPECT_THAT(Problem(R"({"OD": {"sphere": 1}, "OS": {"sphere": 1}, "PD": 62,
+                          "fitting_height": 3})"),
+              HasSubstr("rx.json:fitting_height: got 3, want 5..60"));
+}
+
 }  // namespace
 }  // namespace lorgnette

@@ -7,6 +7,7 @@
 #include "optics/design.h"
 #include "optics/paraxial.h"
 #include "optics/power_vector.h"
+#include "optics/prism_design.h"
 
 namespace lorgnette {
 namespace {
@@ -94,6 +95,46 @@ TEST(SlabOff, GoesOnTheMoreMinusLens) {
   EXPECT_NEAR(plan->prism, 3, 0.15);  // aberration at 10 mm and the equivalent power
   EXPECT_EQ(PlanSlabOff(Make(2), Make(5), 10)->eye, Eye::kRight);
   EXPECT_EQ(PlanSlabOff(Make(-5), Make(-4.5), 10)->prism, 0);
+}
+
+// Exact by rays where the pupil is, and the outline lies about that point.
+TEST(DesignWithPrism, PutsThePrismBeforeThePupilByDecentration) {
+  LensOrder order;
+  order.eye = Eye::kLeft;
+  order.rx = {Diopters(-5), Diopters(-2),       AxisDegrees(30),
+              {},           PrismDiopters(1.5), PrismDiopters(-1)};
+  order.diameter_mm = 50;
+  const auto made = DesignWithPrism(order, 10);
+  ASSERT_TRUE(made) << made.error().message;
+  ASSERT_TRUE(made->decentred);
+  const Lens& lens = made->design.lens;
+  const auto prism = PrismAt(lens, lens.medium.index_d, made->reference_point_mm);
+  ASSERT_TRUE(prism);
+  EXPECT_LT((*prism - PrismInLensFrame(Eye::kLeft, 1.5, -1)).norm(), 2 * kDecentrationTolerance_D);
+  EXPECT_EQ(lens.back_tilt_x, 0);
+  Eigen::Vector2d middle(0, 0);
+  for (const Eigen::Vector2d& p : made->design.order.contour_mm) middle += p;
+  middle /= double(made->design.order.contour_mm.size());
+  EXPECT_LT((middle - made->reference_point_mm).norm(), 1e-9);
+  // The blank grows by twice the decentration, and the edge with it.
+  EXPECT_NEAR(made->design.min_blank_mm, 50 + 2 * made->reference_point_mm.norm() + 2, 1e-3);
+  order.rx.prism_in = order.rx.prism_up = PrismDiopters(0);
+  EXPECT_GT(made->design.max_edge_thickness_mm, DesignLens(order)->max_edge_thickness_mm + 0.5);
+}
+
+TEST(DesignWithPrism, GrindsWhatDecentrationCannotGive) {
+  LensOrder order;
+  order.rx.prism_up = PrismDiopters(2);
+  order.diameter_mm = 50;
+  for (const double sphere : {0.0, 0.5}) {
+    order.rx.sphere = Diopters(sphere);
+    const auto made = DesignWithPrism(order, 10);
+    ASSERT_TRUE(made) << made.error().message;
+    EXPECT_FALSE(made->decentred);
+    EXPECT_THAT(made->why_ground, HasSubstr(sphere == 0 ? "no power" : "too far"));
+    const Lens& lens = made->design.lens;
+    EXPECT_NEAR(PrismAt(lens, lens.medium.index_d, {0, 0})->y(), 2, 1e-9);
+  }
 }
 
 }  // namespace
