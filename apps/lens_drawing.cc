@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "apps/lens_maps.h"
 #include "apps/svg.h"
 #include "optics/outline.h"
 
@@ -61,7 +62,7 @@ class LensRow {
     svg_.Text(
         {24, top_ + 24},
         fmt::format("{}   {}   {}, n {:.4g}", order_.eye == Eye::kRight ? "OD right" : "OS left",
-                    PowerText(order_.rx), order_.medium.name, order_.medium.index_d),
+                    PowerText(column_.made->written), order_.medium.name, order_.medium.index_d),
         Anchor::kStart, "title");
     DrawFront();
     const double axis = astigmatic() ? order_.rx.axis.value() : 180;
@@ -102,12 +103,51 @@ class LensRow {
       svg_.Text(end + Point(0, -8), fmt::format("axis {:.0f}°", order_.rx.axis.value()),
                 Anchor::kMiddle);
     }
-    svg_.Leader(centre, centre + Point(34, 40), "optical centre", Anchor::kStart);
+    DrawMultifocal();
+    svg_.Leader(centre, centre + Point(22, 40), "optical centre", Anchor::kStart);
+    if (column_.made->prism && column_.made->prism->decentred) {
+      const Point pupil = FrontPoint(column_.made->prism->reference_point_mm);
+      svg_.Leader(pupil, pupil + Point(34, -40), "before the pupil", Anchor::kStart);
+    }
     const double below = right_bottom.y() + 26;
     svg_.Dimension({left_top.x(), below}, {right_bottom.x(), below}, {centre.x(), below - 5},
                    order_.contour_mm.empty() ? fmt::format("⌀ {:.1f}", order_.diameter_mm)
                                              : fmt::format("{:.1f}", high.x() - low.x()));
     svg_.Text({centre.x(), below + 18}, "from the front", Anchor::kMiddle, "small");
+  }
+
+  // The segment's boundary, or the near point of a progressive.
+  void DrawMultifocal() {
+    if (const auto* bifocal = std::get_if<BifocalSurface>(&lens_.front.shape())) {
+      const double line = bifocal->center.y() + bifocal->top;
+      if (bifocal->radius == 0) {
+        const auto reach = [&](double sign) {
+          double x = 0;
+          for (std::size_t i = 0; i < outline_.size(); ++i) {
+            const Eigen::Vector2d &a = outline_[i], &b = outline_[(i + 1) % outline_.size()];
+            if ((a.y() < line) == (b.y() < line)) continue;
+            const double at = a.x() + (line - a.y()) / (b.y() - a.y()) * (b.x() - a.x());
+            if (at * sign > x * sign) x = at;
+          }
+          return x;
+        };
+        svg_.Line(FrontPoint({reach(-1), line}), FrontPoint({reach(1), line}), "thin");
+        return;
+      }
+      std::vector<Point> points;
+      for (int i = 0; i < kSectionPoints; ++i) {
+        const double a = 2 * kPi * i / kSectionPoints;
+        Eigen::Vector2d p =
+            bifocal->center + bifocal->radius * Eigen::Vector2d(std::cos(a), std::sin(a));
+        p.y() = std::min(p.y(), line);
+        points.push_back(FrontPoint(p));
+      }
+      svg_.Outline(points, true, "thin");
+    } else if (order_.progressive) {
+      const Point near = FrontPoint(NearPoint(*order_.progressive, order_.eye));
+      svg_.Circle(near, 3 * kDrawingScale, "thin");
+      svg_.Text(near + Point(0, 4), "near", Anchor::kMiddle, "small");
+    }
   }
 
   // Section through the optical centre along a TABO meridian; world at the left, eye at the right.
@@ -220,11 +260,13 @@ class LensRow {
 }  // namespace
 
 std::string LensDrawingSvg(const std::vector<SheetColumn>& lenses) {
-  Svg svg(kWidth, kRowHeight * static_cast<double>(lenses.size()) + 20);
+  const double height = kRowHeight + kMapRowHeight;
+  Svg svg(kWidth, height * static_cast<double>(lenses.size()) + 20);
   double top = 10;
   for (const SheetColumn& column : lenses) {
     LensRow(column, top, svg).Draw();
-    top += kRowHeight;
+    DrawMaps(column.lens->lens(), column.lens->design().order.stop_mm, top + kRowHeight, svg);
+    top += height;
   }
   return svg.Document();
 }

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // A lens drawing: the lens from the front with its optical centre and axis, sections through both
-// principal meridians with radii and thicknesses, to scale, and the numbers beneath. SVG.
+// principal meridians with radii and thicknesses, to scale, the numbers beside them, and maps of
+// what the turning eye meets beneath (apps/lens_maps.h). SVG.
 #pragma once
 
 #include <string>

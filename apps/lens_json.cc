@@ -4,6 +4,8 @@
 #include <cmath>
 #include <nlohmann/json.hpp>
 
+#include "optics/media.h"
+
 namespace lorgnette {
 namespace {
 
@@ -29,6 +31,8 @@ Json OrderJson(const LensOrder& order) {
   json["prism_up"] = rx.prism_up.value();
   json["medium"] = order.medium.name;
   json["index"] = order.medium.index_d;
+  json["index_e"] = IndexAt(order.medium, kLineE_nm);
+  json["abbe"] = order.medium.abbe;
   json["density_g_cm3"] = order.medium.density_g_cm3;
   json["base_curve_D"] = order.base_curve ? Json(order.base_curve->value()) : Json(nullptr);
   json["vertex_distance_mm"] = order.vertex_distance_mm;
@@ -53,6 +57,7 @@ Json LensJson(const LensDesign& design, const LensSheet& sheet) {
   json["edge_thickness_mm"] = Number(sheet.edge_thickness_max_mm);
   json["edge_thickness_min_mm"] = Number(sheet.edge_thickness_min_mm);
   json["mass_g"] = Number(sheet.mass_g);
+  json["min_blank_mm"] = Number(sheet.min_blank_mm);
   json["spectacle_magnification"] = Number(sheet.spectacle_magnification.along);
   // Along the cylinder axis, and across it; equal for a sphere.
   json["meridians"] = {{"back_vertex_power_D", Pair(sheet.back_vertex_power_D)},

@@ -3,8 +3,12 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
 #include <functional>
+
+#include "optics/base_curve.h"
+#include "optics/power_vector.h"
 
 namespace lorgnette {
 namespace {
@@ -42,6 +46,38 @@ std::string PrismText(const EyePrescription& rx) {
   return text.empty() ? "-" : text;
 }
 
+EyePrescription FormOf(const PowerVector& power) {
+  const SphereCylinder form = MinusCylinderForm(power);
+  EyePrescription rx;
+  rx.sphere = form.sphere;
+  rx.cylinder = form.cylinder;
+  rx.axis = form.axis;
+  return rx;
+}
+
+// With the digits that a compensation needs.
+std::string PreciseText(const EyePrescription& rx) {
+  return fmt::format("{:+.3f} {:+.3f} x {:.1f}", rx.sphere.value(), rx.cylinder.value(),
+                     rx.axis.value());
+}
+
+std::string FrontName(const LensOrder& order) {
+  if (order.progressive) {
+    return order.progressive->design == ProgressiveDesign::kSoft ? "soft progressive"
+                                                                 : "progressive";
+  }
+  if (!order.segment) return "distance lens";
+  switch (order.segment->shape) {
+    case SegmentShape::kRound:
+      return fmt::format("round {:.0f}", order.segment->width_mm);
+    case SegmentShape::kFlatTop:
+      return fmt::format("flat-top {:.0f}", order.segment->width_mm);
+    case SegmentShape::kExecutive:
+      return "executive";
+  }
+  return "";
+}
+
 }  // namespace
 
 std::string PowerText(const EyePrescription& rx) {
@@ -65,8 +101,32 @@ std::string LensSheetText(const std::vector<SheetColumn>& columns) {
     return order(c).eye == Eye::kRight ? "OD (right)" : "OS (left)";
   });
   text += "Order\n";
-  row("power, D", [&](const SheetColumn& c) { return PowerText(order(c).rx); });
-  row("prism, prism D", [&](const SheetColumn& c) { return PrismText(order(c).rx); });
+  const auto any = [&](const auto& of) { return std::any_of(columns.begin(), columns.end(), of); };
+  row("power, D", [&](const SheetColumn& c) { return PowerText(c.made->written); });
+  row("prism, prism D", [&](const SheetColumn& c) { return PrismText(c.made->written); });
+  if (any([&](const SheetColumn& c) { return order(c).rx.add != Diopters(0); })) {
+    row("addition, D", [&](const SheetColumn& c) {
+      return fmt::format("{:+.2f}, {}", order(c).rx.add.value(), FrontName(order(c)));
+    });
+  }
+  if (any([](const SheetColumn& c) { return c.made->wear.has_value(); })) {
+    row("made for the wear, D", [&](const SheetColumn& c) { return PreciseText(order(c).rx); });
+    row("worn without that, D", [](const SheetColumn& c) {
+      return c.made->wear ? PreciseText(FormOf(c.made->wear->untouched.power)) : "-";
+    });
+  }
+  if (any([](const SheetColumn& c) { return c.made->thinning_down.value() != 0; })) {
+    row("thinning, prism D down",
+        [](const SheetColumn& c) { return fmt::format("{:.2f}", c.made->thinning_down.value()); });
+  }
+  if (any([](const SheetColumn& c) { return c.made->prism.has_value(); })) {
+    row("prism by", [](const SheetColumn& c) {
+      const PrismDesign& p = *c.made->prism;
+      return p.decentred ? fmt::format("decentration {:+.2f}, {:+.2f} mm", p.reference_point_mm.x(),
+                                       p.reference_point_mm.y())
+                         : std::string("grinding");
+    });
+  }
   row("medium", [&](const SheetColumn& c) {
     const Medium& medium = order(c).medium;
     return fmt::format("{}, n {:.4g}", medium.name, medium.index_d);
@@ -84,6 +144,14 @@ std::string LensSheetText(const std::vector<SheetColumn>& columns) {
     return Meridians({c.sheet.edge_thickness_min_mm, c.sheet.edge_thickness_max_mm}, "{:.2f}");
   });
   row("weight, g", [](const SheetColumn& c) { return fmt::format("{:.1f}", c.sheet.mass_g); });
+  row("least blank, mm",
+      [](const SheetColumn& c) { return fmt::format("{:.1f}", c.sheet.min_blank_mm); });
+  row("base curve on a tool of 1.530, D", [](const SheetColumn& c) {
+    const double n = c.lens->lens().medium.index_d;
+    return Meridians({ToolPower(Diopters(c.sheet.front_power_D.along), n).value(),
+                      ToolPower(Diopters(c.sheet.front_power_D.across), n).value()},
+                     "{:+.2f}");
+  });
   text += "Power\n";
   row("back vertex power, D",
       [](const SheetColumn& c) { return Meridians(c.sheet.back_vertex_power_D, "{:+.4f}"); });
@@ -100,6 +168,17 @@ std::string LensSheetText(const std::vector<SheetColumn>& columns) {
       [](const SheetColumn& c) { return Meridians(c.sheet.spectacle_magnification, "{:.5f}"); });
   row("the eyes as a camera sees them", [](const SheetColumn& c) {
     return fmt::format("{:.5f}", c.sheet.observer_magnification_paraxial);
+  });
+
+  text += "Light\n";
+  row("luminous transmittance, %; category", [](const SheetColumn& c) {
+    return fmt::format("{:.1f}; {}", 100 * c.light.luminous_transmittance,
+                       c.light.filter_category ? std::to_string(*c.light.filter_category) : "-");
+  });
+  row("reflection of each surface, %",
+      [](const SheetColumn& c) { return fmt::format("{:.2f}", 100 * c.light.reflectance); });
+  row("ghost: power, D; intensity, %", [](const SheetColumn& c) {
+    return fmt::format("{:+.1f}; {:.4f}", c.light.ghost_power_D, 100 * c.light.ghost_intensity);
   });
 
   text += "Certificate: rays against the order\n";

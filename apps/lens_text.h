@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "apps/lens_questions.h"
 #include "optics/certify.h"
 #include "optics/lens_sheet.h"
 
@@ -13,6 +14,8 @@ namespace lorgnette {
 struct SheetColumn {
   const CertifiedLens* lens = nullptr;
   LensSheet sheet;
+  const MadeLens* made = nullptr;
+  LensLight light;
 };
 
 // "-4.25 -0.75 x 160", "-4.50", "plano".

@@ -35,6 +35,8 @@ constexpr const char* kStyle = R"(
   .thin { fill: none; stroke: #333; stroke-width: 0.6 }
   .axis { fill: none; stroke: #a02020; stroke-width: 0.7; stroke-dasharray: 12 3 2 3 }
   .glass { fill: url(#hatch); stroke: none }
+  .mark { fill: none; stroke: #7a1f1f; stroke-width: 0.8 }
+  .contour { font-size: 8.5px; paint-order: stroke; stroke: white; stroke-width: 2px }
   .arrow { fill: #333; stroke: none }
   text { font-family: "DejaVu Sans", Arial, sans-serif; fill: #111 }
   .label { font-size: 11px }
@@ -96,6 +98,24 @@ void Svg::Leader(const Point& target, const Point& label, const std::string& tex
            '\n';
   const double gap = anchor == Anchor::kEnd ? -3 : 3;
   Text(label + Point(gap, 4), text, anchor);
+}
+
+void Svg::Circle(const Point& centre, double radius, const std::string& style) {
+  body_ += fmt::format(R"(<circle cx="{:.2f}" cy="{:.2f}" r="{:.2f}" class="{}"/>)", centre.x(),
+                       centre.y(), radius, style) +
+           '\n';
+}
+
+void Svg::Path(const std::string& data, const std::string& attributes) {
+  body_ += fmt::format(R"(<path d="{}" {}/>)", data, attributes) + '\n';
+}
+
+void Svg::BeginClip(const Point& centre, double radius) {
+  const int id = clips_++;
+  body_ += fmt::format(R"(<clipPath id="disc{0}"><circle cx="{1:.2f}" cy="{2:.2f}" r="{3:.2f}"/>)"
+                       R"x(</clipPath><g clip-path="url(#disc{0})">)x",
+                       id, centre.x(), centre.y(), radius) +
+           '\n';
 }
 
 std::string Svg::Document() const {

@@ -15,7 +15,8 @@ class Svg {
 
   Svg(double width, double height) : width_(width), height_(height) {}
 
-  // Styles are the classes of the sheet that Document() writes: "edge", "thin", "axis", "glass".
+  // Styles are the classes of the sheet that Document() writes: "edge", "thin", "axis", "glass",
+  // "mark".
   void Line(const Point& a, const Point& b, const std::string& style);
   void Outline(const std::vector<Point>& points, bool closed, const std::string& style);
   void Text(const Point& at, const std::string& text, Anchor anchor = Anchor::kStart,
@@ -27,11 +28,19 @@ class Svg {
   // A thin line from a label to what it names, with a dot at the end.
   void Leader(const Point& target, const Point& label, const std::string& text, Anchor anchor);
 
+  void Circle(const Point& centre, double radius, const std::string& style);
+  // SVG path data as it stands, with attributes in place of a style.
+  void Path(const std::string& data, const std::string& attributes);
+  // What comes between is cut to a disc.
+  void BeginClip(const Point& centre, double radius);
+  void EndClip() { body_ += "</g>\n"; }
+
   std::string Document() const;
 
  private:
   void Arrow(const Point& tip, const Point& direction);
   double width_, height_;
+  int clips_ = 0;
   std::string body_;
 };
 
