@@ -119,7 +119,8 @@ TEST(DesignWithPrism, PutsThePrismBeforeThePupilByDecentration) {
   // The blank grows by twice the decentration, and the edge with it.
   EXPECT_NEAR(made->design.min_blank_mm, 50 + 2 * made->reference_point_mm.norm() + 2, 1e-3);
   order.rx.prism_in = order.rx.prism_up = PrismDiopters(0);
-  EXPECT_GT(made->design.max_edge_thickness_mm, DesignLens(order)->max_edge_thickness_mm + 0.5);
+  EXPECT_GT(made->design.max_edge_thickness_mm, DesignLens(order)->max_edge_thickness_mm + 0.2);
+  EXPECT_LT(made->design.min_edge_thickness_mm, DesignLens(order)->min_edge_thickness_mm - 0.2);
 }
 
 TEST(DesignWithPrism, GrindsWhatDecentrationCannotGive) {
