@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <opencv2/core/utility.hpp>
 
 #include "base/check.h"
 #include "base/units.h"
@@ -194,9 +195,12 @@ void Anchorer::ChooseViews() {
 void Anchorer::MatchFrames() {
   sightings_.assign(in_.frames.size(), {});
   guesses_.assign(in_.frames.size(), Eigen::Isometry3d::Identity());
-  for (std::size_t f = 0; f < in_.frames.size(); ++f) {
-    if (Seen(f)) sightings_[f] = Match(f, &guesses_[f]);
-  }
+  cv::parallel_for_({0, int(in_.frames.size())}, [this](const cv::Range& range) {
+    for (int i = range.start; i < range.end; ++i) {
+      const auto f = std::size_t(i);
+      if (Seen(f)) sightings_[f] = Match(f, &guesses_[f]);
+    }
+  });
 }
 
 double Anchorer::Bundle(double focal_log_sigma) {
@@ -218,7 +222,7 @@ double Anchorer::Bundle(double focal_log_sigma) {
   std::vector<std::size_t> first_point;
   for (const AnchorView& view : views_) {
     first_point.push_back(points.size());
-    for (const TextureAnchor& a : view.anchors) points.push_back({a.head, a.ray});
+    for (const TextureAnchor& a : view.anchors) points.push_back({a.head, a.ray, a.head});
   }
   std::vector<BundleSighting> sightings;
   std::vector<Eigen::Isometry3d> poses;
@@ -243,16 +247,13 @@ double Anchorer::Bundle(double focal_log_sigma) {
   options.focal_log_sigma = parallax * focal_log_sigma;
   options.sigma_mm = std::max(kLeastDepthSigmaMm, parallax * parallax * kDepthSigmaMm);
   // What the rigid face leaves over (expressions, mostly) is alike in many frames: a first fit
-  // tells how much it is, the second trusts the sightings no more than that allows.
+  // tells how much it is, the second goes on from there and trusts the sightings no more than that
+  // allows.
   const double crop_px = CropPixel(views_[0].frame);
   BundleReport report;
   options.sigma_px = kFirstSigma * crop_px;
-  {
-    Camera camera = camera_;
-    std::vector<Eigen::Isometry3d> tried_poses = poses;
-    std::vector<BundlePoint> tried_points = points;
-    report = FitBundle(sightings, options, camera, tried_poses, tried_points);
-  }
+  options.focal_prior_px = camera_.fx;
+  report = FitBundle(sightings, options, camera_, poses, points);
   options.sigma_px = std::max(kLeastSigma * crop_px, kAlikeFrames * report.rms_px);
   report = FitBundle(sightings, options, camera_, poses, points);
   if (!report.usable) return 0;

@@ -45,10 +45,10 @@ struct DepthPrior {
 };
 
 struct FocalPrior {
-  double inverse_sigma;
+  double inverse_sigma, present;  // logarithm of the present value over the prior's
   template <typename T>
   bool operator()(const T* log_scale, T* residual) const {
-    residual[0] = log_scale[0] * inverse_sigma;
+    residual[0] = (log_scale[0] + present) * inverse_sigma;
     return true;
   }
 };
@@ -79,7 +79,7 @@ BundleReport FitBundle(const std::vector<BundleSighting>& sightings, const Bundl
   for (BundlePoint& point : points) {
     if (!problem.HasParameterBlock(point.head.data())) continue;
     problem.AddResidualBlock(new ceres::AutoDiffCostFunction<DepthPrior, 1, 3>(
-                                 new DepthPrior{point.head, point.ray, 1 / options.sigma_mm}),
+                                 new DepthPrior{point.prior, point.ray, 1 / options.sigma_mm}),
                              nullptr, point.head.data());
     ordering->AddElementToGroup(point.head.data(), 0);
   }
@@ -91,8 +91,10 @@ BundleReport FitBundle(const std::vector<BundleSighting>& sightings, const Bundl
   ordering->AddElementToGroup(&log_scale, 1);
   const bool free_focal = options.focal_log_sigma > 0;
   if (free_focal) {
+    const double present =
+        options.focal_prior_px > 0 ? std::log(camera.fx / options.focal_prior_px) : 0;
     problem.AddResidualBlock(new ceres::AutoDiffCostFunction<FocalPrior, 1, 1>(
-                                 new FocalPrior{1 / options.focal_log_sigma}),
+                                 new FocalPrior{1 / options.focal_log_sigma, present}),
                              nullptr, &log_scale);
   } else {
     problem.SetParameterBlockConstant(&log_scale);

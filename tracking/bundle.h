@@ -10,8 +10,9 @@
 namespace lorgnette {
 
 struct BundlePoint {
-  Eigen::Vector3d head;  // mm; comes back refined
-  Eigen::Vector3d ray;   // unit; along it the point's prior is `sigma_mm` wide, across it is free
+  Eigen::Vector3d head;   // mm; comes back refined
+  Eigen::Vector3d ray;    // unit; along it the point's prior is `sigma_mm` wide, across it is free
+  Eigen::Vector3d prior;  // mm
 };
 
 struct BundleSighting {
@@ -23,7 +24,8 @@ struct BundleSighting {
 struct BundleOptions {
   double sigma_px = 0.5;          // of a sighting of weight 1; the loss is Cauchy from 2 sigma on
   double sigma_mm = 12;           // of a point along its ray
-  double focal_log_sigma = 0.25;  // of the focal length about its present value; 0: held
+  double focal_log_sigma = 0.25;  // of the focal length about `focal_prior_px`; 0: held
+  double focal_prior_px = 0;      // 0: its present value
   std::size_t fixed_frame = 0;    // its pose is held
   int max_iterations = 25;
 };

@@ -9,6 +9,7 @@
 #include <sstream>
 
 #include "base/atomic_file.h"
+#include "tracking/scanned_depth.h"
 
 namespace lorgnette {
 namespace {
@@ -93,7 +94,6 @@ Result<CanonicalMesh> ReadCanonicalMesh(const std::string& path) {
     }
     out.mesh.triangles.push_back(triangle);
   }
-  ComputeVertexNormals(out.mesh);
   for (const Eigen::Vector3d& p : out.mesh.positions) {
     const Eigen::Vector3d reflected(-p.x(), p.y(), p.z());
     const int partner = Nearest(out.mesh.positions, reflected);
@@ -104,6 +104,10 @@ Result<CanonicalMesh> ReadCanonicalMesh(const std::string& path) {
     out.mirror.push_back(partner);
   }
   out.rigid_weight = RigidWeights(out.mesh.positions);
+  for (std::size_t i = 0; i < std::size_t(kLandmarks); ++i) {
+    out.mesh.positions[i].z() += kScannedDepthMm[i];
+  }
+  ComputeVertexNormals(out.mesh);
   return out;
 }
 

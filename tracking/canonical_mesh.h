@@ -32,7 +32,8 @@ struct CanonicalMesh {
   std::vector<double> rigid_weight;  // 0..1: how well the point stands for the skull in a pose fit
 };
 
-// Reads a Wavefront file of 468 vertices (cm), triangles with texture coordinates.
+// Reads a Wavefront file of 468 vertices (cm), triangles with texture coordinates, and gives it the
+// depths of scanned people (tracking/scanned_depth.h).
 // Fails when the file is missing, has other counts, or is not symmetric.
 Result<CanonicalMesh> ReadCanonicalMesh(const std::string& path);
 

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <opencv2/core/utility.hpp>
 
 #include "base/check.h"
 #include "base/units.h"
@@ -151,7 +152,7 @@ double YawOffset(const std::vector<double>& texture, const std::vector<double>& 
 }
 
 ClipFit FitClip(const std::vector<FollowedFrame>& frames, const CanonicalMesh& canonical, int width,
-                int height, double pd_mm, double focal_px) {
+                int height, double pd_mm, const std::optional<Camera>& known) {
   std::vector<const FaceLandmarks*> landmarks;
   for (const FollowedFrame& frame : frames) {
     landmarks.push_back(frame.landmarks ? &*frame.landmarks : nullptr);
@@ -159,9 +160,12 @@ ClipFit FitClip(const std::vector<FollowedFrame>& frames, const CanonicalMesh& c
   ClipFit fit;
   HeadTrack& track = fit.track;
   track.pd_mm = pd_mm;
-  const bool calibrated = focal_px > 0;
-  if (!calibrated) focal_px = TypicalFocal(width, height, pd_mm, landmarks);
-  track.camera = {width, height, focal_px, focal_px, width / 2.0, height / 2.0};
+  if (known) {
+    track.camera = *known;
+  } else {
+    const double focal = TypicalFocal(width, height, pd_mm, landmarks);
+    track.camera = {width, height, focal, focal, width / 2.0, height / 2.0};
+  }
   track.face = canonical.mesh;
 
   std::vector<Eigen::Isometry3d> landmark_poses;
@@ -171,7 +175,7 @@ ClipFit FitClip(const std::vector<FollowedFrame>& frames, const CanonicalMesh& c
 
   const AnchoredClip anchored =
       AnchorClip({frames, landmark_poses, track.face, canonical.rigid_weight},
-                 calibrated ? 0 : kFocalLogSigma, track.camera);
+                 known ? 0 : kFocalLogSigma, track.camera);
   std::vector<Eigen::Isometry3d> poses = Completed(landmarks, landmark_poses, anchored.poses);
 
   ApplyAnchorDepths(anchored.views, points);
@@ -198,12 +202,14 @@ ClipFit FitClip(const std::vector<FollowedFrame>& frames, const CanonicalMesh& c
   for (Eigen::Isometry3d& pose : poses) pose = turn.Rebased(pose);
   Pupils pupils = PupilsOf(points);
   std::vector<IrisReading> irises(frames.size());
-  for (std::size_t f = 0; f < frames.size(); ++f) {
-    if (landmarks[f] == nullptr) continue;
-    const FaceCrop& crop = frames[f].crop;
-    irises[f].right = FindIris(crop, track.camera, poses[f], pupils.right, pd_mm);
-    irises[f].left = FindIris(crop, track.camera, poses[f], pupils.left, pd_mm);
-  }
+  cv::parallel_for_({0, int(frames.size())}, [&](const cv::Range& range) {
+    for (int i = range.start; i < range.end; ++i) {
+      const auto f = std::size_t(i);
+      if (landmarks[f] == nullptr) continue;
+      irises[f].right = FindIris(frames[f].right_eye, track.camera, poses[f], pupils.right, pd_mm);
+      irises[f].left = FindIris(frames[f].left_eye, track.camera, poses[f], pupils.left, pd_mm);
+    }
+  });
   if (const auto seen = SummariseIrises(irises, track.camera, poses, pupils)) {
     track.iris_pd_mm = seen->pd_mm;
     track.iris_pd_sigma_mm = seen->pd_sigma_mm;

@@ -2,6 +2,7 @@
 // From landmarks and crops of a whole clip to camera, personal face and the pose of every frame.
 #pragma once
 
+#include <optional>
 #include <vector>
 
 #include "tracking/canonical_mesh.h"
@@ -26,8 +27,8 @@ struct ClipFit {
 };
 
 // Needs at least one frame with landmarks. Poses are not smoothed, expressions not filled in.
-//   focal_px  0: fitted to the clip about a typical value
+//   known  the calibrated camera; otherwise the focal length is fitted about a typical value
 ClipFit FitClip(const std::vector<FollowedFrame>& frames, const CanonicalMesh& canonical, int width,
-                int height, double pd_mm, double focal_px);
+                int height, double pd_mm, const std::optional<Camera>& known);
 
 }  // namespace lorgnette

@@ -12,12 +12,18 @@ namespace lorgnette {
 namespace {
 
 constexpr double kMinFaceProbability = 0.5;
+// The mirror image, by which left and right are made to err alike, is looked at in every so many
+// frames; between them its effect is carried on.
+constexpr int kMirrorEvery = 4;
 constexpr int kLooksAfterDetection = 2;  // to settle the region before the first landmarks
 constexpr int kThumbnailWidth = 48, kThumbnailHeight = 36;
 // A cut changes the thumbnail by more than this (grey levels), and far more than usual.
 constexpr double kCutLevel = 18, kCutOverUsual = 5;
 constexpr int kCropPixels = 256;
 constexpr double kCropSide = 1.2 / 1.5;  // of the landmark region's side: the face and little more
+
+constexpr int kEyePixels = 96;
+constexpr double kEyeSide = 1.6;  // of the distance between the lids' corners
 
 constexpr double kSmallestSide = 12;  // px; nothing can be told from less
 
@@ -31,6 +37,18 @@ Image<std::uint8_t, 1> GreyOf(const ImageRgb8& rgb) {
   cv::Mat target = MatOf(grey);
   cv::cvtColor(MatOf(rgb), target, cv::COLOR_RGB2GRAY);
   return grey;
+}
+
+FaceCrop EyeCrop(const ImageRgb8& frame, const FaceLandmarks& face, const EyeLandmarks& eye,
+                 double angle) {
+  const auto at = [&](int i) -> Eigen::Vector2d { return face.points[std::size_t(i)].head<2>(); };
+  // A turned eye looks narrow, its iris is as high as ever.
+  const double width =
+      (face.points[std::size_t(eye.inner)] - face.points[std::size_t(eye.outer)]).norm();
+  FaceCrop crop;
+  crop.region = {(at(eye.outer) + at(eye.inner)) / 2, kEyeSide * width, angle};
+  if (Usable(crop.region)) crop.grey = SampleGrey(frame, crop.region, kEyePixels);
+  return crop;
 }
 
 }  // namespace
@@ -49,7 +67,12 @@ Result<FaceFollower> FaceFollower::Load(const std::string& model_dir,
 bool FaceFollower::IsCut(const ImageRgb8& frame) {
   ImageRgb8 small(kThumbnailWidth, kThumbnailHeight);
   cv::Mat target = MatOf(small);
-  cv::resize(MatOf(frame), target, target.size(), 0, 0, cv::INTER_AREA);
+  // Every fourth row tells enough.
+  const cv::Mat all = MatOf(frame);
+  const int skip = frame.height >= 4 * kThumbnailHeight ? 4 : 1;
+  const cv::Mat rows(frame.height / skip, frame.width, CV_8UC3, all.data,
+                     all.step * std::size_t(skip));
+  cv::resize(rows, target, target.size(), 0, 0, cv::INTER_AREA);
   Image<std::uint8_t, 1> thumbnail = GreyOf(small);
   const bool first = thumbnail_.empty();
   std::swap(thumbnail, thumbnail_);
@@ -78,12 +101,18 @@ FollowedFrame FaceFollower::Next(const ImageRgb8& frame, double time_s) {
       }
     }
     if (!Usable(*region_)) continue;
-    FaceLandmarks found = landmarker_.FindSymmetric(frame, *region_);
+    const bool mirror = !followed || ++since_mirror_ >= kMirrorEvery;
+    if (!followed) landmarker_.Forget();
+    if (mirror) since_mirror_ = 0;
+    FaceLandmarks found = mirror ? landmarker_.FindSymmetric(frame, *region_)
+                                 : landmarker_.FindCorrected(frame, *region_);
     if (found.face_probability < kMinFaceProbability || !Usable(found.Region())) continue;
     region_ = found.Region();
     out.crop.region = *region_;
     out.crop.region.side *= kCropSide;
-    out.crop.grey = GreyOf(SampleRegion(frame, out.crop.region, kCropPixels));
+    out.crop.grey = SampleGrey(frame, out.crop.region, kCropPixels);
+    out.right_eye = EyeCrop(frame, found, kRightEye, region_->angle);
+    out.left_eye = EyeCrop(frame, found, kLeftEye, region_->angle);
     out.landmarks = std::move(found);
     return out;
   }

@@ -25,6 +25,7 @@ struct FollowedFrame {
   bool cut_before = false;                 // the film was cut between the frame before and this one
   std::optional<FaceLandmarks> landmarks;  // none: no face
   FaceCrop crop;                           // empty without landmarks
+  FaceCrop right_eye, left_eye;            // finer, of the lids and little more
 };
 
 class FaceFollower {
@@ -40,6 +41,7 @@ class FaceFollower {
   FaceDetector detector_;
   FaceLandmarker landmarker_;
   std::optional<FaceRegion> region_;
+  int since_mirror_ = 0;              // frames since the network last saw the mirror image
   Image<std::uint8_t, 1> thumbnail_;  // of the frame before
   double usual_change_ = 0;           // running mean of the thumbnails' change
 };

@@ -11,12 +11,14 @@ namespace lorgnette {
 namespace {
 
 constexpr int kInputPixels = 192;
+constexpr double kRenewal = 0.5;  // of the kept change, by each new one
 
 }  // namespace
 
 struct FaceLandmarker::Network {
   OnnxNetwork onnx;
   std::vector<int> mirror;
+  std::vector<Eigen::Vector3d> change;  // by the mirror, pixels of the input; empty: not known
 
   // Points in pixels of the input.
   FaceLandmarks Run(const cv::Mat& input) {
@@ -36,7 +38,7 @@ FaceLandmarker::~FaceLandmarker() = default;
 
 Result<FaceLandmarker> FaceLandmarker::Load(const std::string& onnx_path, std::vector<int> mirror) {
   LG_ASSIGN(OnnxNetwork onnx, OnnxNetwork::Load(onnx_path, kInputPixels, {3 * kLandmarks, 1}));
-  return FaceLandmarker(std::make_unique<Network>(Network{std::move(onnx), std::move(mirror)}));
+  return FaceLandmarker(std::make_unique<Network>(Network{std::move(onnx), std::move(mirror), {}}));
 }
 
 namespace {
@@ -63,15 +65,30 @@ FaceLandmarks FaceLandmarker::FindSymmetric(const ImageRgb8& frame, const FaceRe
   cv::Mat flipped;
   cv::flip(MatOf(input), flipped, 1);
   const FaceLandmarks mirrored = network_->Run(flipped);
+  std::vector<Eigen::Vector3d>& change = network_->change;
+  const bool first = change.empty();
+  change.resize(found.points.size(), Eigen::Vector3d::Zero());
   for (std::size_t i = 0; i < found.points.size(); ++i) {
     Eigen::Vector3d other = mirrored.points[std::size_t(network_->mirror[i])];
     other.x() = kInputPixels - other.x();
-    found.points[i] = (found.points[i] + other) / 2;
+    const Eigen::Vector3d half = (other - found.points[i]) / 2;
+    change[i] += (first ? 1 : kRenewal) * (half - change[i]);
+    found.points[i] += half;
   }
   found.face_probability = (found.face_probability + mirrored.face_probability) / 2;
   MoveToImage(region, found);
   return found;
 }
+
+FaceLandmarks FaceLandmarker::FindCorrected(const ImageRgb8& frame, const FaceRegion& region) {
+  const ImageRgb8 input = SampleRegion(frame, region, kInputPixels);
+  FaceLandmarks found = network_->Run(MatOf(input));
+  for (std::size_t i = 0; i < network_->change.size(); ++i) found.points[i] += network_->change[i];
+  MoveToImage(region, found);
+  return found;
+}
+
+void FaceLandmarker::Forget() { network_->change.clear(); }
 
 FaceRegion FaceLandmarks::Region() const {
   std::vector<Eigen::Vector2d> flat;

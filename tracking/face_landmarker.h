@@ -31,8 +31,12 @@ class FaceLandmarker {
 
   FaceLandmarks Find(const ImageRgb8& frame, const FaceRegion& region);
   // The mean of the network's answers for the region and for its mirror image, so that left and
-  // right err alike. Twice the time.
+  // right err alike. Twice the time. Keeps what the mirror changed, as a running mean over the
+  // calls since Forget().
   FaceLandmarks FindSymmetric(const ImageRgb8& frame, const FaceRegion& region);
+  // The network's answer with the kept change added: the same face, a few frames later.
+  FaceLandmarks FindCorrected(const ImageRgb8& frame, const FaceRegion& region);
+  void Forget();
 
  private:
   struct Network;

@@ -13,9 +13,9 @@
 namespace lorgnette {
 namespace {
 
-// The canonical file has the eyes deeper in the face than the mean of scanned heads has
-// (docs/tracking.md): lids and corneas come forward by this, over an ellipse of these half axes.
-constexpr double kEyeForwardMm = 3, kEyeWidthMm = 13, kEyeHeightMm = 8;
+// The corneal apex stands before the mean of the lid margins by this share of the pupil distance
+// (2.0 mm at 64, on the scanned mean head; docs/tracking.md).
+constexpr double kApexBeforeLids = 0.031;
 
 // Landmarks scatter and slide by this share of the pupil distance (docs/tracking.md).
 constexpr double kLandmarkSigma = 0.03;
@@ -32,6 +32,7 @@ Eigen::Vector3d MeanOf(const std::vector<Eigen::Vector3d>& points, const std::ar
   return sum / double(ids.size());
 }
 
+// Level with the lid margins.
 Eigen::Vector3d Apex(const std::vector<Eigen::Vector3d>& points, const EyeLandmarks& eye) {
   const Eigen::Vector3d corners =
       (points[std::size_t(eye.outer)] + points[std::size_t(eye.inner)]) / 2;
@@ -70,7 +71,11 @@ double AngleToCamera(const Eigen::Isometry3d& camera_from_head) {
 }  // namespace
 
 Pupils PupilsOf(const std::vector<Eigen::Vector3d>& points) {
-  return {Apex(points, kRightEye), Apex(points, kLeftEye)};
+  Pupils pupils{Apex(points, kRightEye), Apex(points, kLeftEye)};
+  const double before_lids = kApexBeforeLids * pupils.distance();
+  pupils.right.z() += before_lids;
+  pupils.left.z() += before_lids;
+  return pupils;
 }
 
 Similarity HeadFromPoints(const std::vector<Eigen::Vector3d>& points,
@@ -113,13 +118,7 @@ Eigen::Isometry3d Similarity::Rebased(const Eigen::Isometry3d& camera_from_point
 std::vector<Eigen::Vector3d> CanonicalHead(const CanonicalMesh& canonical, double pd_mm) {
   const Similarity head = HeadFromPoints(canonical.mesh.positions, canonical, pd_mm);
   std::vector<Eigen::Vector3d> points;
-  for (const Eigen::Vector3d& p : canonical.mesh.positions) {
-    Eigen::Vector3d& q = points.emplace_back(head(p));
-    const Eigen::Array2d off((std::abs(q.x()) - pd_mm / 2) / kEyeWidthMm, q.y() / kEyeHeightMm);
-    q.z() += kEyeForwardMm * std::exp(-0.5 * off.square().sum());
-  }
-  const Similarity again = HeadFromPoints(points, canonical, pd_mm);
-  for (Eigen::Vector3d& p : points) p = again(p);
+  for (const Eigen::Vector3d& p : canonical.mesh.positions) points.push_back(head(p));
   return points;
 }
 

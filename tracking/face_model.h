@@ -15,7 +15,7 @@ namespace lorgnette {
 
 // Corneal apices, the wearer's right and left eye, in the space of `points`.
 // Across, midway between the corners of the lids; in height, between the middle of the corners and
-// that of the margins; in depth level with the margins, which lie on the cornea.
+// that of the margins; in depth 0.031 of their distance before the margins (docs/tracking.md).
 struct Pupils {
   Eigen::Vector3d right, left;
   double distance() const { return (left - right).norm(); }
@@ -43,7 +43,7 @@ Similarity HeadFromPoints(const std::vector<Eigen::Vector3d>& points,
 // Only size and origin: the pupils `pd_mm` apart, the origin midway between them.
 Similarity HeadFromPupils(const Pupils& pupils, double pd_mm);
 
-// The canonical face in head space, its eyes brought forward to where people have them.
+// The canonical face in head space.
 std::vector<Eigen::Vector3d> CanonicalHead(const CanonicalMesh& canonical, double pd_mm);
 
 // Pose of a face of the given points from its landmarks alone: the start of every finer fit.

@@ -43,18 +43,52 @@ FaceRegion RegionAround(const std::vector<Eigen::Vector2d>& points,
   return region;
 }
 
-ImageRgb8 SampleRegion(const ImageRgb8& frame, const FaceRegion& region, int pixels) {
-  const int oversample = std::clamp(int(std::lround(region.side / pixels)), 1, kMaxOversample);
+namespace {
+
+// The part of the frame that the region covers, with room for interpolation.
+cv::Rect BoxOf(const FaceRegion& region, const cv::Size& frame) {
+  constexpr double kRoom = 4;
+  const double half =
+      region.side / 2 * (std::abs(std::cos(region.angle)) + std::abs(std::sin(region.angle)));
+  const auto at = [&](double centre, double sign) {
+    // Far outside is outside; the numbers stay in range.
+    return int(std::clamp(std::floor(centre + sign * (half + kRoom)), -1e6, 1e6));
+  };
+  const cv::Point low(at(region.centre.x(), -1), at(region.centre.y(), -1));
+  const cv::Point high(at(region.centre.x(), 1) + 1, at(region.centre.y(), 1) + 1);
+  return cv::Rect(low, high) & cv::Rect(cv::Point(0, 0), frame);
+}
+
+void Sample(const cv::Mat& frame, const FaceRegion& region, cv::Mat& target, bool grey) {
+  const int pixels = target.cols;
+  cv::Rect box = BoxOf(region, frame.size());
+  if (box.width < 2 || box.height < 2) {
+    target.setTo(0);
+    return;
+  }
+  cv::Mat source = frame(box);
+  if (grey) cv::cvtColor(source, source, cv::COLOR_RGB2GRAY);
+  // Halving by area is cheap and leaves less to interpolate.
+  double zoom = 1;
+  if (region.side > 2 * pixels) {
+    box.width &= ~1;
+    box.height &= ~1;
+    cv::Mat half;
+    cv::resize(source(cv::Rect(0, 0, box.width, box.height)), half,
+               cv::Size(box.width / 2, box.height / 2), 0, 0, cv::INTER_AREA);
+    source = half;
+    zoom = 0.5;
+  }
+  const double side = zoom * region.side;
+  const int oversample = std::clamp(int(std::lround(side / pixels)), 1, kMaxOversample);
   const int fine = pixels * oversample;
   // warpAffine counts from pixel centres: index i is position i + 0.5.
-  const double step = region.side / fine;
+  const double step = side / fine;
   const double c = step * std::cos(region.angle), s = step * std::sin(region.angle);
   const Eigen::Vector2d corner =
-      region.ToImage({0.5 / fine, 0.5 / fine}) - Eigen::Vector2d(0.5, 0.5);
+      zoom * (region.ToImage({0.5 / fine, 0.5 / fine}) - Eigen::Vector2d(box.x, box.y)) -
+      Eigen::Vector2d(0.5, 0.5);
   const cv::Matx23d source_from_sample(c, -s, corner.x(), s, c, corner.y());
-  ImageRgb8 out(pixels, pixels);
-  cv::Mat target = MatOf(out);
-  const cv::Mat source = MatOf(frame);
   const int flags = cv::INTER_LINEAR | cv::WARP_INVERSE_MAP;
   if (oversample == 1) {
     cv::warpAffine(source, target, source_from_sample, target.size(), flags);
@@ -63,6 +97,21 @@ ImageRgb8 SampleRegion(const ImageRgb8& frame, const FaceRegion& region, int pix
     cv::warpAffine(source, large, source_from_sample, cv::Size(fine, fine), flags);
     cv::resize(large, target, target.size(), 0, 0, cv::INTER_AREA);
   }
+}
+
+}  // namespace
+
+ImageRgb8 SampleRegion(const ImageRgb8& frame, const FaceRegion& region, int pixels) {
+  ImageRgb8 out(pixels, pixels);
+  cv::Mat target = MatOf(out);
+  Sample(MatOf(frame), region, target, false);
+  return out;
+}
+
+Image<std::uint8_t, 1> SampleGrey(const ImageRgb8& frame, const FaceRegion& region, int pixels) {
+  Image<std::uint8_t, 1> out(pixels, pixels);
+  cv::Mat target = MatOf(out);
+  Sample(MatOf(frame), region, target, true);
   return out;
 }
 

@@ -27,5 +27,6 @@ FaceRegion RegionAround(const std::vector<Eigen::Vector2d>& points,
 // `pixels` x `pixels` samples of the region; black outside the image; shrunk by area so that fine
 // detail does not alias into the network's input.
 ImageRgb8 SampleRegion(const ImageRgb8& frame, const FaceRegion& region, int pixels);
+Image<std::uint8_t, 1> SampleGrey(const ImageRgb8& frame, const FaceRegion& region, int pixels);
 
 }  // namespace lorgnette

@@ -88,7 +88,7 @@ Eigen::Isometry3d ReadPose(JsonReader& json, const std::string& key) {
   return pose;
 }
 
-Camera ReadCamera(JsonReader json) {
+Camera ReadCamera(JsonReader json, LensDistortion& distortion) {
   Camera camera;
   camera.width = int(std::lround(json.Number("width", 1, 32768)));
   camera.height = int(std::lround(json.Number("height", 1, 32768)));
@@ -96,6 +96,14 @@ Camera ReadCamera(JsonReader json) {
   camera.fy = json.NumberOr("fy", camera.fx, 1, kHuge);
   camera.cx = json.NumberOr("cx", camera.width / 2.0, -kHuge, kHuge);
   camera.cy = json.NumberOr("cy", camera.height / 2.0, -kHuge, kHuge);
+  if (json.Has("distortion")) {
+    const std::vector<double> d = json.Numbers("distortion");
+    if (d.size() == 5 && AllBounded(d)) {
+      distortion = {d[0], d[1], d[2], d[3], d[4]};
+    } else {
+      json.Fail("distortion", fmt::format("got {} numbers, want k1 k2 p1 p2 k3", d.size()));
+    }
+  }
   return camera;
 }
 
@@ -171,14 +179,18 @@ int HeadTrack::frames_without_face() const {
 
 Result<HeadTrack> ReadHeadTrack(const std::string& path) {
   LG_ASSIGN(const std::string text, ReadFile(path));
-  LG_ASSIGN(JsonReader json, JsonReader::Parse(text, path));
+  return ParseHeadTrack(text, path);
+}
+
+Result<HeadTrack> ParseHeadTrack(const std::string& text, const std::string& name) {
+  LG_ASSIGN(JsonReader json, JsonReader::Parse(text, name));
   const std::string format = json.String("format");
   if (format != kFormat) {
     json.Fail("format", fmt::format("got '{}', want '{}'", format, kFormat));
   }
   json.IntegerOr("version", kVersion, kVersion, kVersion);
   HeadTrack track;
-  track.camera = ReadCamera(json.Object("camera"));
+  track.camera = ReadCamera(json.Object("camera"), track.distortion);
   track.pd_mm = json.Number("pd_mm", 40, 90);
   track.pupil_right = {-track.pd_mm / 2, 0, 0};
   track.pupil_left = {track.pd_mm / 2, 0, 0};
@@ -186,6 +198,7 @@ Result<HeadTrack> ReadHeadTrack(const std::string& path) {
   if (json.Has("pupil_left")) track.pupil_left = ReadPoints(json, "pupil_left", 1)[0];
   track.iris_pd_mm = json.NumberOr("iris_pd_mm", 0, 0, 200);
   track.iris_pd_sigma_mm = json.NumberOr("iris_pd_sigma_mm", 0, 0, 200);
+  json.Ignore("iris_pd_minus_pd_mm");  // of the two above
   track.face = ReadFace(json.Object("face"));
   ComputeVertexNormals(track.face);
   double last = -kHuge;
@@ -207,12 +220,16 @@ Status WriteHeadTrack(const HeadTrack& track, const std::string& path) {
   const Camera& c = track.camera;
   json["camera"] = {{"width", c.width}, {"height", c.height}, {"fx", c.fx},
                     {"fy", c.fy},       {"cx", c.cx},         {"cy", c.cy}};
+  if (const LensDistortion& d = track.distortion; !d.IsNone()) {
+    json["camera"]["distortion"] = {d.k1, d.k2, d.p1, d.p2, d.k3};
+  }
   json["pd_mm"] = track.pd_mm;
   json["pupil_right"] = {track.pupil_right.x(), track.pupil_right.y(), track.pupil_right.z()};
   json["pupil_left"] = {track.pupil_left.x(), track.pupil_left.y(), track.pupil_left.z()};
   if (track.iris_pd_mm > 0) {
     json["iris_pd_mm"] = Rounded(track.iris_pd_mm);
     json["iris_pd_sigma_mm"] = Rounded(track.iris_pd_sigma_mm);
+    json["iris_pd_minus_pd_mm"] = Rounded(track.iris_pd_mm - track.pd_mm);
   }
   Json& face = json["face"];
   face["positions"] = JsonOf(track.face.positions);

@@ -13,6 +13,7 @@
 #include "base/camera.h"
 #include "base/mesh.h"
 #include "base/result.h"
+#include "tracking/lens_distortion.h"
 
 namespace lorgnette {
 
@@ -30,6 +31,8 @@ struct TrackedFrame {
 
 struct HeadTrack {
   Camera camera;
+  // Of the real lens. Poses and pixels here are those of the pinhole picture, freed from it.
+  LensDistortion distortion;
   TriangleMesh face;  // personal neutral mesh, 468 vertices of the canonical topology, head space
   double pd_mm = 64;  // the scale in use
   Eigen::Vector3d pupil_right{-32, 0, 0}, pupil_left{32, 0, 0};  // corneal apices, head space
@@ -41,7 +44,8 @@ struct HeadTrack {
   int frames_without_face() const;
 };
 
-// Reads and writes a track file (JSON, docs/tracking.md).
+// Reads and writes a track file (JSON, docs/tracking.md); `name` is for messages.
+Result<HeadTrack> ParseHeadTrack(const std::string& text, const std::string& name);
 Result<HeadTrack> ReadHeadTrack(const std::string& path);
 Status WriteHeadTrack(const HeadTrack& track, const std::string& path);
 

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "tracking/iris.h"
 
+#include <Eigen/Cholesky>
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -20,7 +21,8 @@ constexpr int kRimSamples = 7;      // a side
 // Angles on the sides of the disc that lids leave free, degrees below the horizontal.
 constexpr double kRimFromDeg = -25, kRimToDeg = 36;
 constexpr double kMinContrast = 6;  // grey levels
-constexpr double kMostTurn = 0.6;   // radians off the line of sight
+constexpr double kMostRadiusMove = 0.15;
+constexpr double kMostTurn = 0.6;  // radians off the line of sight
 
 double Bilinear(const Image<std::uint8_t, 1>& image, double x, double y) {
   x = std::clamp(x - 0.5, 0.0, image.width - 1.001);
@@ -73,6 +75,54 @@ void Search(const IrisPlane& plane, double radius, double half_x, double half_y,
       if (contrast > best.contrast) best = {x, y, radius, contrast};
     }
   }
+}
+
+double Peak(double before, double at, double after);
+
+// Moves a circle to the steps along its radii: each free direction votes with the place of its
+// steepest rise, and directions that disagree (lashes, a reflection) lose their vote.
+bool FitRim(const IrisPlane& plane, Best& best) {
+  constexpr int kRays = 12, kSteps = 17, kRounds = 4;  // rays a side; samples a ray
+  constexpr double kFromDeg = -38, kToDeg = 52, kInner = 0.72, kOuter = 1.28;
+  constexpr double kScatterMm = 0.12;    // of the votes, from which on they lose weight
+  constexpr double kPriorSigmaMm = 0.6;  // of the move, against the search, in units of scatter
+  for (int round = 0; round < kRounds; ++round) {
+    Eigen::Matrix3d normal = std::pow(kScatterMm / kPriorSigmaMm, 2) * Eigen::Matrix3d::Identity();
+    Eigen::Vector3d right = Eigen::Vector3d::Zero();
+    int votes = 0;
+    for (int k = 0; k < 2 * kRays; ++k) {
+      const double a = RadiansFromDegrees(kFromDeg + (kToDeg - kFromDeg) * (k / 2) / (kRays - 1));
+      const Eigen::Vector2d out(k % 2 == 0 ? std::cos(a) : -std::cos(a), -std::sin(a));
+      const double step = (kOuter - kInner) * best.radius / (kSteps - 1);
+      std::array<double, kSteps> value{};
+      for (int i = 0; i < kSteps; ++i) {
+        const double r = kInner * best.radius + step * i;
+        value[std::size_t(i)] = plane.At(best.x + r * out.x(), best.y + r * out.y());
+      }
+      // The rise over two steps, which a pixel of blur does not hide.
+      std::array<double, kSteps> rise{};
+      std::size_t top = 2;
+      for (std::size_t i = 2; i + 2 < kSteps; ++i) {
+        rise[i] = value[i + 1] + value[i + 2] - value[i - 1] - value[i - 2];
+        if (rise[i] > rise[top]) top = i;
+      }
+      if (rise[top] < kMinContrast || top == 2 || top + 3 == kSteps) continue;
+      const double found = kInner * best.radius +
+                           step * (double(top) + Peak(rise[top - 1], rise[top], rise[top + 1]));
+      const double off = found - best.radius;
+      const double w = 1 / (1 + off * off / (kScatterMm * kScatterMm) / (round == 0 ? 9 : 1));
+      const Eigen::Vector3d by(out.x(), out.y(), 1);
+      normal += w * by * by.transpose();
+      right += w * off * by;
+      ++votes;
+    }
+    if (votes < kRays) return false;
+    const Eigen::Vector3d move = normal.ldlt().solve(right);
+    best.x += move.x();
+    best.y += move.y();
+    best.radius += move.z();
+  }
+  return best.radius > 0;
 }
 
 // Offset in -0.5..0.5 of the top of a parabola through three even samples.
@@ -134,6 +184,11 @@ std::optional<Iris> FindIris(const FaceCrop& crop, const Camera& camera,
   if (best.contrast < kMinContrast) return std::nullopt;
   // A best place at the border of the search is no place.
   if (std::abs(best.x) > kSearchAcrossMm || std::abs(best.y) > kSearchUpMm) return std::nullopt;
+  if (Best rim = best;
+      FitRim(plane, rim) && std::abs(rim.radius / best.radius - 1) < kMostRadiusMove) {
+    const Eigen::Vector2d found = plane.centre + plane.map * Eigen::Vector2d(rim.x, rim.y);
+    return Iris{crop.region.ToImage(found / crop.grey.width), rim.radius, best.contrast};
+  }
   const double h = kFineStepMm, r = best.radius, dr = 0.06 * expected;
   const double c = best.contrast;
   const double x = best.x + h * Peak(plane.Contrast(best.x - h, best.y, r), c,

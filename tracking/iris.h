@@ -23,9 +23,11 @@ struct Iris {
 
 // Looks for the dark disc of the iris about the expected apex: the circle whose left and right rims
 // have the greatest step from dark to bright (Daugman 1993, the sides only, since lids cover top
-// and bottom). nullopt for a closed or turned-away eye.
+// and bottom), then moved to where the brightness rises most along its free radii. nullopt for a
+// closed or turned-away eye.
 //   apex       expected corneal apex, head space
 //   pd_mm      the head's present scale, from which the radius is expected
+// Tested: centre to a thirtieth of its diameter, radius to a fiftieth.
 std::optional<Iris> FindIris(const FaceCrop& crop, const Camera& camera,
                              const Eigen::Isometry3d& camera_from_head, const Eigen::Vector3d& apex,
                              double pd_mm);

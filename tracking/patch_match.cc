@@ -38,9 +38,9 @@ bool Inside(const Image<float, 1>& image, double x, double y) {
 }
 
 // Value at index coordinates; the caller keeps them inside.
-float Bilinear(const Image<float, 1>& image, double x, double y) {
+float Bilinear(const Image<float, 1>& image, float x, float y) {
   const int ix = int(x), iy = int(y);
-  const float fx = float(x - ix), fy = float(y - iy);
+  const float fx = x - float(ix), fy = y - float(iy);
   const float* row = image.at(ix, iy);
   const float* next = row + image.width;
   return (row[0] * (1 - fx) + row[1] * fx) * (1 - fy) + (next[0] * (1 - fx) + next[1] * fx) * fy;
@@ -61,22 +61,22 @@ TexturePyramid::TexturePyramid(const Image<std::uint8_t, 1>& grey) {
 std::optional<PatchTemplate> PatchTemplate::Cut(const Image<float, 1>& level,
                                                 const Eigen::Vector2d& centre) {
   const double reach = kRadius + 1;
-  const double cx = centre.x() - 0.5, cy = centre.y() - 0.5;
-  if (!Inside(level, cx - reach, cy - reach) || !Inside(level, cx + reach, cy + reach)) {
+  const double at_x = centre.x() - 0.5, at_y = centre.y() - 0.5;
+  const float cx = float(at_x), cy = float(at_y);
+  if (!Inside(level, at_x - reach, at_y - reach) || !Inside(level, at_x + reach, at_y + reach)) {
     return std::nullopt;
   }
   PatchTemplate patch;
   patch.structure_.setZero();
   int k = 0;
-  for (int y = -kRadius; y <= kRadius; ++y) {
-    for (int x = -kRadius; x <= kRadius; ++x, ++k) {
+  for (int y = -kRadius; y <= kRadius; y += kStep) {
+    for (int x = -kRadius; x <= kRadius; x += kStep, ++k) {
       const auto i = std::size_t(k);
-      patch.value_[i] = Bilinear(level, cx + x, cy + y);
-      patch.dx_[i] =
-          (Bilinear(level, cx + x + 1, cy + y) - Bilinear(level, cx + x - 1, cy + y)) / 2;
-      patch.dy_[i] =
-          (Bilinear(level, cx + x, cy + y + 1) - Bilinear(level, cx + x, cy + y - 1)) / 2;
-      const Eigen::Vector2d gradient(patch.dx_[i], patch.dy_[i]);
+      const float px = cx + float(x), py = cy + float(y);
+      patch.value_[i] = Bilinear(level, px, py);
+      patch.dx_[i] = (Bilinear(level, px + 1, py) - Bilinear(level, px - 1, py)) / 2;
+      patch.dy_[i] = (Bilinear(level, px, py + 1) - Bilinear(level, px, py - 1)) / 2;
+      const Eigen::Vector2d gradient(double(patch.dx_[i]), double(patch.dy_[i]));
       patch.structure_ += gradient * gradient.transpose();
     }
   }
@@ -104,19 +104,21 @@ std::optional<PatchTemplate::Match> PatchTemplate::Find(const Image<float, 1>& l
     if (!Inside(level, cx - extent, cy - extent) || !Inside(level, cx + extent, cy + extent)) {
       return std::nullopt;
     }
-    double sum_x = 0, sum_y = 0;
+    float sum_x = 0, sum_y = 0;
     int k = 0;
-    for (int y = -kRadius; y <= kRadius; ++y) {
-      double px = cx + m(0, 1) * y - m(0, 0) * kRadius, py = cy + m(1, 1) * y - m(1, 0) * kRadius;
-      for (int x = -kRadius; x <= kRadius; ++x, ++k, px += m(0, 0), py += m(1, 0)) {
+    const float step_x = float(kStep * m(0, 0)), step_y = float(kStep * m(1, 0));
+    for (int y = -kRadius; y <= kRadius; y += kStep) {
+      float px = float(cx + m(0, 1) * y - m(0, 0) * kRadius);
+      float py = float(cy + m(1, 1) * y - m(1, 0) * kRadius);
+      for (int x = 0; x < kSide; ++x, ++k, px += step_x, py += step_y) {
         const auto i = std::size_t(k);
         seen[i] = Bilinear(level, px, py);
         const float difference = value_[i] - seen[i];
-        sum_x += double(dx_[i] * difference);
-        sum_y += double(dy_[i] * difference);
+        sum_x += dx_[i] * difference;
+        sum_y += dy_[i] * difference;
       }
     }
-    const Eigen::Vector2d move = m * (inverse * Eigen::Vector2d(sum_x, sum_y));
+    const Eigen::Vector2d move = m * (inverse * Eigen::Vector2d(double(sum_x), double(sum_y)));
     position += move;
     settled = move.norm() < kSettled;
     if ((position - guess).norm() > reach_px) return std::nullopt;

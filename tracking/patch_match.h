@@ -25,7 +25,8 @@ struct TexturePyramid {
 // A square patch of one level: values and gradients.
 class PatchTemplate {
  public:
-  static constexpr int kRadius = 8;  // px: 17 x 17 samples
+  static constexpr int kRadius = 8;  // px
+  static constexpr int kStep = 2;    // px between samples: 9 x 9 of them
   // nullopt when the patch leaves the picture or has too little texture in one direction.
   static std::optional<PatchTemplate> Cut(const Image<float, 1>& level,
                                           const Eigen::Vector2d& centre);
@@ -45,7 +46,7 @@ class PatchTemplate {
   double strength() const { return strength_; }
 
  private:
-  static constexpr int kSide = 2 * kRadius + 1;
+  static constexpr int kSide = 2 * kRadius / kStep + 1;
   static constexpr int kSamples = kSide * kSide;
   std::array<float, kSamples> value_, dx_, dy_;
   Eigen::Matrix2d structure_;  // sum of gradient * gradient^T

@@ -45,6 +45,10 @@ Status Tracker::Add(const ImageRgb8& frame, double time_s) {
   if (s.frames.empty()) {
     s.width = frame.width;
     s.height = frame.height;
+    if (const auto& c = s.options.camera; c && (c->width != s.width || c->height != s.height)) {
+      return Failure(fmt::format("frame 0: got {}x{}, want {}x{} as the camera", s.width, s.height,
+                                 c->width, c->height));
+    }
   } else if (frame.width != s.width || frame.height != s.height) {
     return Failure(fmt::format("frame {}: got {}x{}, want {}x{} as the first", s.frames.size(),
                                frame.width, frame.height, s.width, s.height));
@@ -67,8 +71,12 @@ Result<HeadTrack> Tracker::Finish() {
     return Failure(fmt::format("video: no face found in any of {} frames, want at least one",
                                s.frames.size()));
   }
-  ClipFit fit =
-      FitClip(s.frames, s.canonical, s.width, s.height, s.options.pd_mm, s.options.focal_px);
+  std::optional<Camera> camera = s.options.camera;
+  if (!camera && s.options.focal_px > 0) {
+    const double f = s.options.focal_px;
+    camera = {s.width, s.height, f, f, s.width / 2.0, s.height / 2.0};
+  }
+  ClipFit fit = FitClip(s.frames, s.canonical, s.width, s.height, s.options.pd_mm, camera);
   std::vector<bool> cut_before;
   for (const FollowedFrame& frame : s.frames) cut_before.push_back(frame.cut_before);
   SmoothTrack(cut_before, fit.confidence, fit.track);

@@ -4,8 +4,10 @@
 #pragma once
 
 #include <memory>
+#include <optional>
 #include <string>
 
+#include "base/camera.h"
 #include "base/image.h"
 #include "base/result.h"
 #include "tracking/head_track.h"
@@ -19,6 +21,8 @@ struct TrackerOptions {
   std::string model_dir;  // folder with the converted networks and the canonical mesh
   double pd_mm = 64;      // scale: distance between the pupils, kMinPdMm..kMaxPdMm
   double focal_px = 0;    // 0: from the clip, as far as it tells (tracking/focal_prior.h)
+  std::optional<Camera> camera =
+      std::nullopt;  // calibrated, of the frames' size; wins over focal_px
 };
 
 class Tracker {

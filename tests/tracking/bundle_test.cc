@@ -46,7 +46,8 @@ TEST(FitBundle, RecoversPosesDepthsAndFocalLength) {
   const Eigen::Vector3d eye = scene.poses[0].inverse().translation();
   for (std::size_t p = 0; p < scene.points.size(); ++p) {
     const Eigen::Vector3d ray = (scene.points[p] - eye).normalized();
-    points.push_back({scene.points[p] + (p % 2 ? 3 : -3) * ray, ray});
+    const Eigen::Vector3d start = scene.points[p] + (p % 2 ? 3 : -3) * ray;
+    points.push_back({start, ray, start});
   }
   BundleOptions options;
   options.sigma_px = 0.01;
@@ -70,7 +71,7 @@ TEST(FitBundle, HoldsAKnownFocalLengthAndTheFixedFrame) {
   std::vector<Eigen::Isometry3d> poses = scene.poses;
   poses[2] = poses[1];
   std::vector<BundlePoint> points;
-  for (const Eigen::Vector3d& p : scene.points) points.push_back({p, Eigen::Vector3d::UnitZ()});
+  for (const Eigen::Vector3d& p : scene.points) points.push_back({p, Eigen::Vector3d::UnitZ(), p});
   BundleOptions options;
   options.focal_log_sigma = 0;
   ASSERT_TRUE(FitBundle(scene.sightings, options, camera, poses, points).usable);

@@ -112,7 +112,6 @@ TEST(TypicalFocal, IsExactWhereBothHabitsAgree) {
     return f;
   };
   const FaceLandmarks usual = faces(1), large = faces(2);
-  // PupilsOf on a face with its eyes brought forward: same distance to rounding.
   EXPECT_NEAR(TypicalFocal(960, 720, 64, {nullptr, &usual}), focal, 1e-6 * focal);
   const double longer = TypicalFocal(960, 720, 64, {&large});
   EXPECT_GT(longer, 1.3 * focal);

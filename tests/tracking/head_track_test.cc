@@ -10,7 +10,9 @@
 #include <string>
 
 #include "base/atomic_file.h"
+#include "cmake/source_dir.h"
 #include "tests/tracking/synthetic_face.h"
+#include "tracking/camera_file.h"
 
 namespace lorgnette {
 namespace {
@@ -26,6 +28,7 @@ HeadTrack SmallTrack() {
   HeadTrack track;
   track.camera = testing::TestCamera();
   track.pd_mm = 61.5;
+  track.distortion = {-0.1, 0.02, 0.001, -0.002, 0.003};
   track.iris_pd_mm = 62.25;
   track.iris_pd_sigma_mm = 2.125;
   track.pupil_right = {-30.75, 0.25, 0};
@@ -73,6 +76,8 @@ TEST(HeadTrack, ComesBackFromItsFile) {
   ASSERT_TRUE(back) << back.error().message;
   EXPECT_EQ(back->camera.width, track.camera.width);
   EXPECT_EQ(back->camera.fy, track.camera.fy);
+  EXPECT_EQ(back->distortion.k1, track.distortion.k1);
+  EXPECT_EQ(back->distortion.k3, track.distortion.k3);
   EXPECT_EQ(back->pd_mm, track.pd_mm);
   EXPECT_EQ(back->iris_pd_mm, track.iris_pd_mm);
   EXPECT_EQ(back->iris_pd_sigma_mm, track.iris_pd_sigma_mm);
@@ -104,6 +109,27 @@ TEST(HeadTrack, ReadsWhatAnotherProgramLeavesOut) {
   EXPECT_EQ(track->frames[0].camera_from_head.translation(), Eigen::Vector3d(5, 6, 500));
 }
 
+// The `nth` JSON example of the page.
+std::string ExampleInDocs(int nth) {
+  const auto page = ReadFile(LORGNETTE_SOURCE_DIR "/docs/tracking.md");
+  if (!page) return page.error().message;
+  const std::string fence = "```json\n";
+  std::size_t from = 0;
+  for (int i = 0; i <= nth; ++i) from = page->find(fence, from) + fence.size();
+  return page->substr(from, page->find("```", from) - from);
+}
+
+TEST(HeadTrack, ReadsTheExampleOfItsDocumentation) {
+  const auto track = ParseHeadTrack(ExampleInDocs(1), "docs/tracking.md");
+  ASSERT_TRUE(track) << track.error().message;
+  ASSERT_EQ(track->frames.size(), 3u);
+  EXPECT_EQ(track->frames[1].vertices.size(), 3u);
+  EXPECT_EQ(track->frames_without_face(), 1);
+  const auto camera = ParseCameraFile(ExampleInDocs(0), "docs/tracking.md");
+  ASSERT_TRUE(camera) << camera.error().message;
+  EXPECT_EQ(camera->views, 12);
+}
+
 struct Broken {
   const char* from;
   const char* to;
@@ -129,6 +155,8 @@ INSTANTIATE_TEST_SUITE_P(
         Broken{"\"pd_mm\"", "\"pd\"", "unknown key"},
         Broken{"lorgnette-head-track", "vtk", "format: got 'vtk'"},
         Broken{"\"fx\": 700", "\"fx\": -700", "camera.fx"},
+        Broken{"\"fx\": 700", "\"fx\": 700, \"distortion\": [0.1]",
+               "camera.distortion: got 1 numbers"},
         Broken{"[0, 1, 2]", "[0, 1, 3]", "got vertex 3, want a whole number 0..2"},
         Broken{"[0, 1, 2]", "[0, 1]", "got 2 numbers, want three a triangle"},
         Broken{"[0, 1, 0]]", "[0, 1]]", "got 8 numbers, want three a point"},
