@@ -15,6 +15,7 @@
 namespace lorgnette {
 namespace {
 
+constexpr std::size_t kFramesForFocal = 48;
 constexpr double kFocalLogSigma = 0.25;  // about the typical focal length
 // How far the shape may leave its prior once the anchors have told the depth (mm).
 const Eigen::Vector3d kShapeSigmaMm(20, 20, 1);
@@ -120,6 +121,32 @@ std::vector<Eigen::Isometry3d> Completed(const std::vector<const FaceLandmarks*>
   return poses;
 }
 
+// The focal length from some frames of the clip, beforehand: a face shaped under a wrong one is
+// bent, and its poses with it.
+Camera CameraOfClip(const std::vector<FollowedFrame>& frames, const CanonicalMesh& canonical,
+                    int width, int height, double pd_mm) {
+  std::vector<FollowedFrame> some;
+  const std::size_t stride = 1 + (frames.size() - 1) / kFramesForFocal;
+  for (std::size_t f = 0; f < frames.size(); ++f) {
+    if (frames[f].landmarks && (f % stride == 0 || frames.size() - f <= stride)) {
+      some.push_back(frames[f]);
+    }
+  }
+  if (some.empty()) some = frames;
+  std::vector<const FaceLandmarks*> landmarks;
+  for (const FollowedFrame& frame : some) {
+    landmarks.push_back(frame.landmarks ? &*frame.landmarks : nullptr);
+  }
+  const double focal = TypicalFocal(width, height, pd_mm, landmarks);
+  Camera camera{width, height, focal, focal, width / 2.0, height / 2.0};
+  TriangleMesh face = canonical.mesh;
+  std::vector<Eigen::Isometry3d> poses;
+  face.positions = FitFace(camera, canonical, landmarks, pd_mm, poses);
+  ComputeVertexNormals(face);
+  AnchorClip({some, poses, face, canonical.rigid_weight}, kFocalLogSigma, camera);
+  return camera;
+}
+
 }  // namespace
 
 double YawOffset(const std::vector<double>& texture, const std::vector<double>& network) {
@@ -160,12 +187,7 @@ ClipFit FitClip(const std::vector<FollowedFrame>& frames, const CanonicalMesh& c
   ClipFit fit;
   HeadTrack& track = fit.track;
   track.pd_mm = pd_mm;
-  if (known) {
-    track.camera = *known;
-  } else {
-    const double focal = TypicalFocal(width, height, pd_mm, landmarks);
-    track.camera = {width, height, focal, focal, width / 2.0, height / 2.0};
-  }
+  track.camera = known ? *known : CameraOfClip(frames, canonical, width, height, pd_mm);
   track.face = canonical.mesh;
 
   std::vector<Eigen::Isometry3d> landmark_poses;
@@ -174,8 +196,7 @@ ClipFit FitClip(const std::vector<FollowedFrame>& frames, const CanonicalMesh& c
   ComputeVertexNormals(track.face);
 
   const AnchoredClip anchored =
-      AnchorClip({frames, landmark_poses, track.face, canonical.rigid_weight},
-                 known ? 0 : kFocalLogSigma, track.camera);
+      AnchorClip({frames, landmark_poses, track.face, canonical.rigid_weight}, 0, track.camera);
   std::vector<Eigen::Isometry3d> poses = Completed(landmarks, landmark_poses, anchored.poses);
 
   ApplyAnchorDepths(anchored.views, points);
