@@ -29,8 +29,9 @@ Result<CutLens> MakeLens(Eye eye, const Fit& fit, const Prescription& prescripti
   const LensOrder order = OrderLens(eye, fit, prescription, pupil, options, centre);
   LG_ASSIGN(LensDesign design, DesignLens(order));
   LG_ASSIGN(const CertifiedLens certified, Certify(std::move(design)));
-  return CutAndMount(certified, eye == Eye::kRight ? fit.frame.right : fit.frame.left, centre,
-                     options.cut);
+  CutOptions cut = options.cut;
+  if (!cut.edge) cut.edge = EdgeFor(fit.frame.mount);
+  return CutAndMount(certified, eye == Eye::kRight ? fit.frame.right : fit.frame.left, centre, cut);
 }
 
 }  // namespace
@@ -68,6 +69,10 @@ Result<Eyewear> MakeEyewear(const Fit& fit, const Prescription& prescription,
   LG_ASSIGN(CutLens left, make(Eye::kLeft, pupil_left));
   Eyewear eyewear{fit.frame, std::move(right), std::move(left), fit.head_from_frame, fit.wearing};
   WearingPosition& wearing = eyewear.wearing;
+  for (const auto& [lens, side] :
+       {std::pair(&eyewear.right, "right lens: "), std::pair(&eyewear.left, "left lens: ")}) {
+    for (const std::string& note : lens->notes) wearing.notes.push_back(side + note);
+  }
   if (const auto d = VertexDistance(eyewear.right, fit.head_from_frame, pupil_right)) {
     wearing.vertex_distance_right_mm = *d;
   }

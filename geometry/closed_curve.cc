@@ -48,6 +48,25 @@ Eigen::Vector2d Combine(const Polygon2& control, std::size_t piece, const Eigen:
   return sum;
 }
 
+// Calls take(i, j, u) at n equal steps of arc length: u of the way from point i to point j.
+template <typename Take>
+void WalkAlong(const Polygon2& polygon, int n, const Take& take) {
+  LG_CHECK_GE(polygon.size(), 3u);
+  const double total = Perimeter(polygon);
+  std::size_t edge = 0;
+  double start = 0;
+  double length = (polygon[1] - polygon[0]).norm();
+  for (int i = 0; i < n; ++i) {
+    const double target = total * i / n;
+    while (start + length < target && edge + 1 < polygon.size()) {
+      start += length;
+      ++edge;
+      length = (polygon[(edge + 1) % polygon.size()] - polygon[edge]).norm();
+    }
+    take(edge, (edge + 1) % polygon.size(), length > 0 ? (target - start) / length : 0.0);
+  }
+}
+
 }  // namespace
 
 ClosedSpline::ClosedSpline(Polygon2 control) : control_(std::move(control)) {
@@ -205,24 +224,23 @@ Polygon2 Offset(const Polygon2& polygon, double offset_mm) {
 }
 
 Polygon2 Resample(const Polygon2& polygon, int n) {
-  LG_CHECK_GE(polygon.size(), 3u);
-  const double total = Perimeter(polygon);
   Polygon2 points;
   points.reserve(std::size_t(n));
-  std::size_t edge = 0;
-  double start = 0;
-  double length = (polygon[1] - polygon[0]).norm();
-  for (int i = 0; i < n; ++i) {
-    const double target = total * i / n;
-    while (start + length < target && edge + 1 < polygon.size()) {
-      start += length;
-      ++edge;
-      length = (polygon[(edge + 1) % polygon.size()] - polygon[edge]).norm();
-    }
-    const double u = length > 0 ? (target - start) / length : 0;
-    points.push_back(polygon[edge] + u * (polygon[(edge + 1) % polygon.size()] - polygon[edge]));
-  }
+  WalkAlong(polygon, n, [&](std::size_t i, std::size_t j, double u) {
+    points.push_back(polygon[i] + u * (polygon[j] - polygon[i]));
+  });
   return points;
+}
+
+std::vector<double> ResampleAlong(const Polygon2& polygon, const std::vector<double>& values,
+                                  int n) {
+  LG_CHECK_EQ(values.size(), polygon.size());
+  std::vector<double> result;
+  result.reserve(std::size_t(n));
+  WalkAlong(polygon, n, [&](std::size_t i, std::size_t j, double u) {
+    result.push_back((1 - u) * values[i] + u * values[j]);
+  });
+  return result;
 }
 
 Boxing MeasureContour(const Polygon2& contour) {

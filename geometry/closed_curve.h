@@ -47,6 +47,9 @@ double DistanceToBoundary(const Polygon2& polygon, const Eigen::Vector2d& point)
 Polygon2 Offset(const Polygon2& polygon, double offset_mm);
 // n points at equal steps of arc length along the polygon.
 Polygon2 Resample(const Polygon2& polygon, int n);
+// Values given at the polygon's points, at the points of Resample; linear between.
+std::vector<double> ResampleAlong(const Polygon2& polygon, const std::vector<double>& values,
+                                  int n);
 
 // Boxing (ISO 8624) of one contour in its opening's plane; dbl_mm stays 0.
 Boxing MeasureContour(const Polygon2& contour);

@@ -5,10 +5,10 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <queue>
 
 #include "base/units.h"
 #include "geometry/closed_curve.h"
+#include "geometry/silhouette.h"
 
 namespace lorgnette {
 namespace {
@@ -16,6 +16,7 @@ namespace {
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
 constexpr double kToolingPower = 530;  // D * mm: 1000 (1.530 - 1)
 constexpr int kPlaneRounds = 4;
+constexpr double kEdgeDepth_mm = 0.15;    // points so near to a lens' outermost one are of its edge
 constexpr double kHollowSearch_mm = 2.5;  // a groove lies at most this far behind the lip
 
 // Cuts of the mesh by one half-plane through the axis: segments in (distance from axis, height).
@@ -99,6 +100,25 @@ std::vector<Eigen::Vector2d> VisibleSide(const Profile& profile, double lip) {
   return points;
 }
 
+// A lens in place of a rim: its outermost points, at the middle of the edge's height.
+Feeler FeelOutside(const Profile& profile) {
+  double reach = -kInfinity;
+  for (const auto& [a, b] : profile) reach = std::max({reach, a.x(), b.x()});
+  Feeler feeler;
+  if (reach <= 0) return feeler;
+  double low = kInfinity, high = -kInfinity;
+  for (const auto& [a, b] : profile) {
+    for (const Eigen::Vector2d& p : {a, b}) {
+      if (p.x() < reach - kEdgeDepth_mm) continue;
+      low = std::min(low, p.y());
+      high = std::max(high, p.y());
+    }
+  }
+  feeler.lip = feeler.groove = reach;
+  feeler.lip_height = feeler.groove_height = (low + high) / 2;
+  return feeler;
+}
+
 Feeler Feel(const Profile& profile, double min_groove_mm) {
   Feeler feeler;
   for (const auto& [a, b] : profile) {
@@ -147,13 +167,17 @@ struct Trace {
   std::vector<double> height;  // of the groove, over the axis' origin
 };
 
+enum class Traced { kRim, kLens };
+
 Result<Trace> TraceAround(const TriangleMesh& front, const Eigen::Isometry3d& frame_from_axis,
-                          const ContourOptions& options) {
+                          Traced traced, const ContourOptions& options) {
   const std::vector<Profile> profiles =
       CutByHalfPlanes(front, frame_from_axis.inverse(), options.points, options.search_mm);
   Trace trace;
   for (int k = 0; k < options.points; ++k) {
-    const Feeler feeler = Feel(profiles[std::size_t(k)], options.min_groove_mm);
+    const Profile& profile = profiles[std::size_t(k)];
+    const Feeler feeler =
+        traced == Traced::kRim ? Feel(profile, options.min_groove_mm) : FeelOutside(profile);
     const double degrees = 360.0 * k / options.points;
     if (!(feeler.lip < options.search_mm)) {
       return Failure("frame: no closed rim: got nothing at " +
@@ -193,84 +217,6 @@ Eigen::Vector2d BoxCentre(const Polygon2& polygon) {
   return (low + high) / 2;
 }
 
-// A mesh drawn along z into cells, and the empty regions it encloses.
-class Silhouette {
- public:
-  explicit Silhouette(const TriangleMesh& mesh) {
-    Eigen::Vector3d low = Eigen::Vector3d::Constant(kInfinity), high = -low;
-    for (const Eigen::Vector3d& p : mesh.positions) {
-      low = low.cwiseMin(p);
-      high = high.cwiseMax(p);
-    }
-    origin_ = low.head<2>() - Eigen::Vector2d::Constant(2 * kCell_mm);
-    width_ = int((high.x() - low.x()) / kCell_mm) + 5;
-    height_ = int((high.y() - low.y()) / kCell_mm) + 5;
-    cells_.assign(std::size_t(width_) * std::size_t(height_), 0);
-    for (const Eigen::Vector3i& t : mesh.triangles) Draw(mesh, t);
-  }
-  std::vector<SilhouetteHole> Holes() {
-    Flood(0, 0);  // outside
-    std::vector<SilhouetteHole> holes;
-    for (int y = 0; y < height_; ++y) {
-      for (int x = 0; x < width_; ++x) {
-        if (cells_[Index(x, y)] == 0) holes.push_back(Flood(x, y));
-      }
-    }
-    std::sort(holes.begin(), holes.end(), [](const SilhouetteHole& a, const SilhouetteHole& b) {
-      return a.area_mm2 > b.area_mm2;
-    });
-    return holes;
-  }
-
- private:
-  static constexpr double kCell_mm = 0.25;
-  std::size_t Index(int x, int y) const {
-    return std::size_t(y) * std::size_t(width_) + std::size_t(x);
-  }
-  // Conservative: every cell that the triangle's samples at a third of a cell touch.
-  void Draw(const TriangleMesh& mesh, const Eigen::Vector3i& t) {
-    const Eigen::Vector2d a = mesh.positions[std::size_t(t[0])].head<2>();
-    const Eigen::Vector2d ab = mesh.positions[std::size_t(t[1])].head<2>() - a;
-    const Eigen::Vector2d ac = mesh.positions[std::size_t(t[2])].head<2>() - a;
-    const double longest = std::max({ab.norm(), ac.norm(), (ab - ac).norm()});
-    const int n = std::max(1, int(std::ceil(3 * longest / kCell_mm)));
-    for (int i = 0; i <= n; ++i) {
-      for (int j = 0; i + j <= n; ++j) {
-        const Eigen::Vector2d p = (a + ab * i / n + ac * j / n - origin_) / kCell_mm;
-        cells_[Index(int(p.x()), int(p.y()))] = 1;
-      }
-    }
-  }
-  SilhouetteHole Flood(int x0, int y0) {
-    SilhouetteHole hole;
-    Eigen::Vector2d sum(0, 0);
-    std::queue<std::pair<int, int>> queue;
-    queue.push({x0, y0});
-    cells_[Index(x0, y0)] = 2;
-    long count = 0;
-    while (!queue.empty()) {
-      const auto [x, y] = queue.front();
-      queue.pop();
-      ++count;
-      sum += Eigen::Vector2d(x + 0.5, y + 0.5);
-      const int steps[4][2] = {{1, 0}, {-1, 0}, {0, 1}, {0, -1}};
-      for (const auto& step : steps) {
-        const int u = x + step[0], v = y + step[1];
-        if (u < 0 || v < 0 || u >= width_ || v >= height_ || cells_[Index(u, v)] != 0) continue;
-        cells_[Index(u, v)] = 2;
-        queue.push({u, v});
-      }
-    }
-    hole.area_mm2 = double(count) * kCell_mm * kCell_mm;
-    hole.centre = origin_ + sum / double(count) * kCell_mm;
-    return hole;
-  }
-
-  Eigen::Vector2d origin_;
-  int width_ = 0, height_ = 0;
-  std::vector<char> cells_;  // 0 empty, 1 frame, 2 visited
-};
-
 double CurveOf(const LensOpening& opening) {
   std::vector<Eigen::Vector3d> points;
   for (std::size_t i = 0; i < opening.contour_mm.size(); ++i) {
@@ -283,18 +229,14 @@ double CurveOf(const LensOpening& opening) {
 
 }  // namespace
 
-std::vector<SilhouetteHole> SilhouetteHoles(const TriangleMesh& mesh) {
-  if (mesh.empty()) return {};
-  return Silhouette(mesh).Holes();
-}
+namespace {
 
-Result<LensOpening> TraceOpening(const TriangleMesh& front,
-                                 const Eigen::Isometry3d& frame_from_axis,
-                                 const ContourOptions& options) {
+Result<LensOpening> TraceShape(const TriangleMesh& front, const Eigen::Isometry3d& frame_from_axis,
+                               Traced traced, const ContourOptions& options) {
   Eigen::Isometry3d frame_from_opening = frame_from_axis;
   Trace trace;
   for (int round = 0; round <= kPlaneRounds; ++round) {
-    LG_ASSIGN(trace, TraceAround(front, frame_from_opening, options));
+    LG_ASSIGN(trace, TraceAround(front, frame_from_opening, traced, options));
     if (round == kPlaneRounds) break;
     const Eigen::Vector2d centre = BoxCentre(Smooth(trace.contour, options));
     std::vector<Eigen::Vector3d> points;
@@ -338,24 +280,12 @@ Result<LensOpening> TraceOpening(const TriangleMesh& front,
   return opening;
 }
 
-Result<TracedOpenings> TraceOpenings(const TriangleMesh& front, const ContourOptions& options) {
-  if (front.empty()) return Failure("frame: no closed rim: the front has no triangles");
-  std::vector<SilhouetteHole> holes = SilhouetteHoles(front);
-  std::erase_if(holes, [&](const SilhouetteHole& h) { return h.area_mm2 < options.min_area_mm2; });
-  if (holes.size() < 2) {
-    return Failure("frame: no closed rim: got " + std::to_string(holes.size()) +
-                   " openings seen from the front, want 2");
-  }
-  if (holes[0].centre.x() > holes[1].centre.x()) std::swap(holes[0], holes[1]);
-  TracedOpenings traced;
-  const auto trace = [&](const SilhouetteHole& hole) {
-    Eigen::Isometry3d axis = Eigen::Isometry3d::Identity();
-    axis.translation() << hole.centre.x(), hole.centre.y(), 0;
-    return TraceOpening(front, axis, options);
-  };
-  LG_ASSIGN(traced.right, trace(holes[0]));
-  LG_ASSIGN(traced.left, trace(holes[1]));
+Eigen::Isometry3d AxisThrough(const Eigen::Vector2d& p) {
+  return Eigen::Isometry3d(Eigen::Translation3d(p.x(), p.y(), 0));
+}
 
+// Boxing, face form and curve of two openings that are traced.
+void Summarise(TracedOpenings& traced) {
   const Boxing right = MeasureContour(traced.right.contour_mm);
   const Boxing left = MeasureContour(traced.left.contour_mm);
   traced.boxing.a_mm = (right.a_mm + left.a_mm) / 2;
@@ -373,7 +303,82 @@ Result<TracedOpenings> TraceOpenings(const TriangleMesh& front, const ContourOpt
   };
   traced.face_form_deg = (turn(traced.left) - turn(traced.right)) / 2;
   traced.frame_curve_diopters = (CurveOf(traced.right) + CurveOf(traced.left)) / 2;
+}
+
+}  // namespace
+
+Result<LensOpening> TraceOpening(const TriangleMesh& front,
+                                 const Eigen::Isometry3d& frame_from_axis,
+                                 const ContourOptions& options) {
+  return TraceShape(front, frame_from_axis, Traced::kRim, options);
+}
+
+Result<TracedOpenings> TraceOpenings(const TriangleMesh& front, const ContourOptions& options) {
+  if (front.empty()) return Failure("frame: no closed rim: the front has no triangles");
+  std::vector<SilhouetteRegion> holes = SilhouetteHoles(front);
+  std::erase_if(holes,
+                [&](const SilhouetteRegion& h) { return h.area_mm2 < options.min_area_mm2; });
+  if (holes.size() < 2) {
+    return Failure("frame: no closed rim: got " + std::to_string(holes.size()) +
+                   " openings seen from the front, want 2");
+  }
+  if (holes[0].centre.x() > holes[1].centre.x()) std::swap(holes[0], holes[1]);
+  TracedOpenings traced;
+  LG_ASSIGN(traced.right, TraceOpening(front, AxisThrough(holes[0].centre), options));
+  LG_ASSIGN(traced.left, TraceOpening(front, AxisThrough(holes[1].centre), options));
+  Summarise(traced);
   return traced;
+}
+
+Result<TracedOpenings> TraceLenses(const TriangleMesh& lenses, const ContourOptions& options) {
+  std::vector<SilhouetteRegion> discs = SilhouetteDiscs(lenses);
+  std::erase_if(discs,
+                [&](const SilhouetteRegion& d) { return d.area_mm2 < options.min_area_mm2; });
+  if (discs.size() != 2) {
+    return Failure("frame: got " + std::to_string(discs.size()) +
+                   " lenses seen from the front, want 2");
+  }
+  if (discs[0].centre.x() > discs[1].centre.x()) std::swap(discs[0], discs[1]);
+  TracedOpenings traced;
+  const auto trace = [&](const SilhouetteRegion& disc) {
+    TriangleMesh one = lenses;
+    std::erase_if(one.triangles, [&](const Eigen::Vector3i& t) {
+      Eigen::Vector3d middle(0, 0, 0);
+      for (int k = 0; k < 3; ++k) middle += lenses.positions[std::size_t(t[k])] / 3;
+      const Eigen::Vector2d p = middle.head<2>();
+      return (p.array() < disc.low.array() - 1).any() || (p.array() > disc.high.array() + 1).any();
+    });
+    return TraceShape(one, AxisThrough(disc.centre), Traced::kLens, options);
+  };
+  LG_ASSIGN(traced.right, trace(discs[0]));
+  LG_ASSIGN(traced.left, trace(discs[1]));
+  Summarise(traced);
+  return traced;
+}
+
+double RimShare(const TriangleMesh& front, const LensOpening& opening) {
+  constexpr int kDirections = 120;
+  constexpr double kInside_mm = 1.5, kOutside_mm = 2.5;  // of the contour: where a rim may be
+  const std::vector<Profile> profiles =
+      CutByHalfPlanes(front, opening.frame_from_opening.inverse(), kDirections,
+                      ContourOptions{}.search_mm + kOutside_mm);
+  int covered = 0;
+  for (int k = 0; k < kDirections; ++k) {
+    const double angle = 2 * kPi * k / kDirections;
+    const Eigen::Vector2d along(std::cos(angle), std::sin(angle));
+    double reach = 0;  // of the contour in this direction
+    for (const Eigen::Vector2d& p : opening.contour_mm) {
+      if (p.dot(along) > 0 && std::abs(p.x() * along.y() - p.y() * along.x()) < 0.5) {
+        reach = std::max(reach, p.dot(along));
+      }
+    }
+    const auto& profile = profiles[std::size_t(k)];
+    covered += std::any_of(profile.begin(), profile.end(), [&](const auto& segment) {
+      const auto [near, far] = std::minmax(segment.first.x(), segment.second.x());
+      return far > reach - kInside_mm && near < reach + kOutside_mm;
+    });
+  }
+  return double(covered) / kDirections;
 }
 
 TriangleMesh PartsOfKind(const FrameModel& frame, FramePartKind kind) {

@@ -37,12 +37,13 @@ struct TracedOpenings {
 // Finds the two openings of a front seen along the frame's +z and traces them.
 Result<TracedOpenings> TraceOpenings(const TriangleMesh& front, const ContourOptions& options = {});
 
-// Empty regions that a mesh seen along z encloses, greatest first; to 0.25 mm.
-struct SilhouetteHole {
-  Eigen::Vector2d centre{0, 0};  // of its area, mm
-  double area_mm2 = 0;
-};
-std::vector<SilhouetteHole> SilhouetteHoles(const TriangleMesh& mesh);
+// The same of the lenses themselves, where no closed rim holds them (half rim, rimless): their
+// outlines, and the middles of their edges in place of the groove. Any two discs seen along +z.
+Result<TracedOpenings> TraceLenses(const TriangleMesh& lenses, const ContourOptions& options = {});
+
+// Share of the directions around an opening in which the front has a rim at its contour: about 1
+// for a full rim, 0 for a lens that nothing holds but screws.
+double RimShare(const TriangleMesh& front, const LensOpening& opening);
 
 // All parts of one kind as one mesh.
 TriangleMesh PartsOfKind(const FrameModel& frame, FramePartKind kind);

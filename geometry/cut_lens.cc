@@ -16,8 +16,8 @@
 namespace lorgnette {
 namespace {
 
-constexpr double kMinBevelPosition = 0.25, kMaxBevelPosition = 0.5;
-constexpr int kBevelPositionsTried = 26;
+constexpr double kBevelShare = 1.0 / 3;  // of the edge, from the front: where a bevel looks best
+constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
 double DegreesOf(const Eigen::Vector2d& p) {
   const double degrees = DegreesFromRadians(std::atan2(p.y(), p.x()));
@@ -59,22 +59,86 @@ Result<EdgeHeights> MeasureEdge(const Lens& lens, const std::vector<Eigen::Vecto
   return heights;
 }
 
-// Where the front vertex must lie on the opening's axis for the apex to meet the groove at each
-// point: the middle of the range, and half the range.
+// How a lens is seated: where its front vertex lies on the opening's axis, and where the apex of
+// its edge is at each point (lens frame).
 struct Seat {
-  double front_vertex = 0, misfit = std::numeric_limits<double>::infinity();
+  double front_vertex = 0, misfit = 0;
+  std::size_t worst = 0;  // the point of the greatest distance to the groove
+  std::vector<double> apex;
 };
-Seat SeatWith(double position, const EdgeHeights& edge, const std::vector<double>& groove) {
-  double low = std::numeric_limits<double>::infinity(), high = -low;
+
+// The apex wanted at a point when the front vertex lies at f (opening coordinates) is f - groove.
+
+// Apexes that are given: the middle of the range of what each point wants.
+Seat SeatGiven(const std::vector<double>& apex, const std::vector<double>& groove) {
+  double low = kInfinity, high = -kInfinity;
+  std::size_t lowest = 0;
   for (std::size_t k = 0; k < groove.size(); ++k) {
-    const double apex = edge.front[k] + position * (edge.back[k] - edge.front[k]);
-    low = std::min(low, groove[k] + apex);
-    high = std::max(high, groove[k] + apex);
+    if (groove[k] + apex[k] < low) {
+      low = groove[k] + apex[k];
+      lowest = k;
+    }
+    high = std::max(high, groove[k] + apex[k]);
   }
-  return {(low + high) / 2, (high - low) / 2};
+  return {(low + high) / 2, (high - low) / 2, lowest, apex};
+}
+
+// Apexes that follow the groove within [least, most] at each point. The greatest distance to the
+// groove is a convex function of the front vertex' place: its least value is (highest lower end -
+// lowest upper end) / 2, or 0 over a whole range of places, in which the one nearest to the wanted
+// share of the edge is taken.
+Seat SeatFollowing(const EdgeHeights& edge, const std::vector<double>& groove, double margin) {
+  std::vector<double> least(groove.size()), most(groove.size());
+  double low = -kInfinity, high = kInfinity, wanted = 0;
+  for (std::size_t k = 0; k < groove.size(); ++k) {
+    const double thickness = edge.back[k] - edge.front[k];
+    // A thin edge keeps its apex within its middle third.
+    const double keep = std::min(margin, thickness / 3);
+    least[k] = edge.front[k] + keep;
+    most[k] = edge.back[k] - keep;
+    low = std::max(low, groove[k] + least[k]);
+    high = std::min(high, groove[k] + most[k]);
+    wanted += (groove[k] + edge.front[k] + kBevelShare * thickness) / double(groove.size());
+  }
+  Seat seat;
+  seat.front_vertex = low <= high ? std::clamp(wanted, low, high) : (low + high) / 2;
+  seat.apex.resize(groove.size());
+  for (std::size_t k = 0; k < groove.size(); ++k) {
+    const double asked = seat.front_vertex - groove[k];
+    seat.apex[k] = std::clamp(asked, least[k], most[k]);
+    const double off = std::abs(asked - seat.apex[k]);
+    if (off > seat.misfit) {
+      seat.misfit = off;
+      seat.worst = k;
+    }
+  }
+  return seat;
+}
+
+// Slope of z against r^2 / 2 along a contour: the curvature of the sphere that it lies on.
+double MeanCurvature(const std::vector<Eigen::Vector2d>& contour, const std::vector<double>& z) {
+  double mean_r = 0, mean_z = 0;
+  const double n = double(contour.size());
+  for (std::size_t k = 0; k < contour.size(); ++k) {
+    mean_r += contour[k].squaredNorm() / 2 / n;
+    mean_z += z[k] / n;
+  }
+  double both = 0, squares = 0;
+  for (std::size_t k = 0; k < contour.size(); ++k) {
+    const double r = contour[k].squaredNorm() / 2 - mean_r;
+    both += r * (z[k] - mean_z);
+    squares += r * r;
+  }
+  return squares > 0 ? both / squares : 0;
 }
 
 }  // namespace
+
+EdgeForm EdgeFor(FrameMount mount) {
+  return mount == FrameMount::kFullRim   ? EdgeForm::kBevel
+         : mount == FrameMount::kHalfRim ? EdgeForm::kGroove
+                                         : EdgeForm::kFlat;
+}
 
 std::vector<Eigen::Vector2d> ContourInLensFrame(const std::vector<Eigen::Vector2d>& contour_mm,
                                                 const Eigen::Vector2d& optical_centre) {
@@ -87,26 +151,40 @@ std::vector<Eigen::Vector2d> ContourInLensFrame(const std::vector<Eigen::Vector2
 
 Result<CutLens> CutAndMount(const CertifiedLens& lens, const LensOpening& opening,
                             const Eigen::Vector2d& optical_centre, const CutOptions& options) {
-  CutLens cut{lens, ContourInLensFrame(opening.contour_mm, optical_centre),
-              Eigen::Isometry3d::Identity(), TriangleMesh{}, 0};
+  CutLens cut{lens,
+              ContourInLensFrame(opening.contour_mm, optical_centre),
+              Eigen::Isometry3d::Identity(),
+              TriangleMesh{},
+              0,
+              {},
+              {}};
   LG_ASSIGN(const EdgeHeights edge, MeasureEdge(lens.lens(), cut.contour_mm, options));
   std::vector<double> groove(opening.groove_height_mm.rbegin(), opening.groove_height_mm.rend());
   groove.resize(cut.contour_mm.size(), 0.0);
 
-  double position = options.bevel_position.value_or(0.5);
-  Seat seat = SeatWith(position, edge, groove);
-  if (options.edge == EdgeForm::kBevel && !options.bevel_position) {
-    for (int k = 0; k < kBevelPositionsTried; ++k) {
-      const double tried = kMinBevelPosition +
-                           (kMaxBevelPosition - kMinBevelPosition) * k / (kBevelPositionsTried - 1);
-      const Seat with = SeatWith(tried, edge, groove);
-      if (with.misfit < seat.misfit) {
-        seat = with;
-        position = tried;
-      }
+  const EdgeForm form = options.edge.value_or(EdgeForm::kBevel);
+  Seat seat;
+  if (form == EdgeForm::kBevel && !options.bevel_position) {
+    seat = SeatFollowing(edge, groove, options.bevel_margin_mm);
+  } else {
+    const double share = form == EdgeForm::kBevel ? *options.bevel_position : 0.5;
+    std::vector<double> apex;
+    for (std::size_t k = 0; k < groove.size(); ++k) {
+      apex.push_back(edge.front[k] + share * (edge.back[k] - edge.front[k]));
     }
+    seat = SeatGiven(apex, groove);
   }
   cut.mount_misfit_mm = seat.misfit;
+  if (form == EdgeForm::kBevel && seat.misfit > kMisfitNote_mm) {
+    const Eigen::Vector2d& at = cut.contour_mm[seat.worst];
+    cut.notes.push_back(fmt::format(
+        "bevel {:.1f} mm off the groove at {:.0f} degrees, where the edge is {:.1f} mm thick: the "
+        "lens' front is {} than the rim",
+        seat.misfit, DegreesOf({-at.x(), at.y()}), edge.back[seat.worst] - edge.front[seat.worst],
+        MeanCurvature(cut.contour_mm, edge.front) > -MeanCurvature(cut.contour_mm, groove)
+            ? "more curved"
+            : "flatter"));
+  }
   cut.frame_from_lens =
       opening.frame_from_opening *
       Eigen::Translation3d(optical_centre.x(), optical_centre.y(), seat.front_vertex) *
@@ -115,9 +193,15 @@ Result<CutLens> CutAndMount(const CertifiedLens& lens, const LensOpening& openin
   LensMeshOptions mesh;
   mesh.element_mm = options.element_mm;
   mesh.edge_points = options.edge_points;
-  mesh.bevel_height_mm = options.edge == EdgeForm::kBevel ? options.bevel_height_mm : 0;
-  mesh.bevel_angle_deg = options.bevel_angle_deg;
-  mesh.bevel_position = position;
+  mesh.apex_z_mm = seat.apex;
+  if (form == EdgeForm::kBevel) {
+    mesh.bevel_height_mm = options.bevel_height_mm;
+    mesh.bevel_angle_deg = options.bevel_angle_deg;
+  } else if (form == EdgeForm::kGroove) {
+    mesh.groove_width_mm = options.groove_width_mm;
+    mesh.groove_depth_mm = options.groove_depth_mm;
+  }
+  cut.apex_z_mm = std::move(seat.apex);
   LG_ASSIGN(cut.mesh, BuildLensMesh(lens.lens(), cut.contour_mm, mesh));
   return cut;
 }

@@ -11,6 +11,7 @@
 #include "base/units.h"
 #include "geometry/face_relief.h"
 #include "geometry/frame_adjust.h"
+#include "geometry/parametric_frame.h"
 #include "geometry/rim_shape.h"
 
 namespace lorgnette {
@@ -24,6 +25,10 @@ constexpr double kHeightWorth_mm = 1.0;  // of pupil height weighs as 1 mm of ve
 constexpr double kWidthNote_mm = 4;
 constexpr double kSwingMost_deg = 8, kBowMost_mm = 8;
 constexpr std::size_t kCanonicalVertices = 468, kRightSide = 234, kLeftSide = 454;
+constexpr double kShiftStep_mm = 0.5;
+constexpr double kShiftWorth = 0.02;  // of 1 mm^2 of pad shift: bend no more than it is worth
+constexpr double kSizeWorth = 0.05;   // of 1 mm^2 of another bridge size
+constexpr double kInfinity = std::numeric_limits<double>::infinity();
 constexpr std::size_t kFrontStride = 3;  // of the front's vertices that are tested against the skin
 
 // Frame points in frame coordinates that the skin must not pass.
@@ -100,6 +105,13 @@ struct Candidate {
   double vertex_mm = 0, pupil_height_mm = 0;
 };
 
+// One height on the nose: the tilt that the ears give there, and the depth at which rims and bridge
+// stop. Neither depends on the pads.
+struct HeightRow {
+  double y = 0, tilt_deg = 0;
+  std::optional<double> front_z;
+};
+
 class Fitter {
  public:
   Fitter(const FrameModel& frame, const FaceRelief& relief, const EarPoints& ears,
@@ -118,13 +130,14 @@ class Fitter {
     }
     target_height_ =
         options.pupil_height_mm.value_or(std::clamp(0.09 * frame.boxing.b_mm, 2.0, 5.0));
+    FindRows();
   }
 
   const Obstacles& points() const { return points_; }
 
-  // Slides a candidate sideways until both sides press alike.
-  void Centre(double shift, Candidate& c) const {
-    const Obstacles points = Moved(shift);
+  // Slides a candidate sideways until both sides press alike, and back until it touches.
+  void Settle(Candidate& c) const {
+    const Obstacles& points = points_;
     const Eigen::Matrix3d rotation = TiltRotation(c.tilt_deg);
     double low = -kSideSearch_mm, high = kSideSearch_mm;
     const auto difference = [&](double x) {
@@ -139,21 +152,27 @@ class Fitter {
         (difference(middle) > 0 ? low : high) = middle;
       }
       c.x = (low + high) / 2;
-      const auto z = RestingDepth(points, relief_, rotation, c.x, c.y, 0);
-      if (z) c.z = *z;
     }
+    if (const auto z = RestingDepth(points, relief_, rotation, c.x, c.y, 0)) c.z = *z;
     Price(c);
   }
 
   // The best height on the nose, in the middle of the face, for pads moved outward by `shift`.
-  Candidate Best(double shift) {
+  Candidate Best(double shift) const {
     const Obstacles moved = Moved(shift);
     Candidate best;
-    for (double y = kLowest_mm; y <= kHighest_mm; y += kHeightStep_mm) {
-      const auto candidate = At(moved, y);
-      if (candidate && candidate->cost < best.cost) best = *candidate;
+    for (const HeightRow& row : rows_) {
+      const Eigen::Matrix3d rotation = TiltRotation(row.tilt_deg);
+      const auto pads = RestingDepth({moved.contacts, {}}, relief_, rotation, 0, row.y, 0);
+      if (!pads && !row.front_z) continue;
+      Candidate c;
+      c.y = row.y;
+      c.tilt_deg = row.tilt_deg;
+      c.z = std::max(pads.value_or(-kInfinity), row.front_z.value_or(-kInfinity));
+      Price(c);
+      if (c.cost < best.cost) best = c;
     }
-    best.cost += 0.02 * shift * shift;  // bend no more than it is worth
+    best.cost += kShiftWorth * shift * shift;
     return best;
   }
 
@@ -164,21 +183,25 @@ class Fitter {
     return moved;
   }
 
-  std::optional<Candidate> At(const Obstacles& points, double y) const {
-    Candidate c;
-    c.y = y;
-    c.z = 14;
-    for (int round = 0; round < 2; ++round) {
-      c.tilt_deg = options_.tilt_deg.value_or(
-          std::clamp(TiltByEars(frame_, ears_, y, c.z),
-                     std::max(kTiltLeast_deg, frame_.pantoscopic_tilt_deg - kTiltBend_deg),
-                     std::min(kTiltMost_deg, frame_.pantoscopic_tilt_deg + kTiltBend_deg)));
-      const auto z = RestingDepth(points, relief_, TiltRotation(c.tilt_deg), 0, y, 0);
-      if (!z) return std::nullopt;
-      c.z = *z;
+  void FindRows() {
+    for (double y = kLowest_mm; y <= kHighest_mm; y += kHeightStep_mm) {
+      HeightRow row;
+      row.y = y;
+      double z = 14;
+      for (int round = 0; round < 2; ++round) {
+        row.tilt_deg = options_.tilt_deg.value_or(
+            std::clamp(TiltByEars(frame_, ears_, y, z),
+                       std::max(kTiltLeast_deg, frame_.pantoscopic_tilt_deg - kTiltBend_deg),
+                       std::min(kTiltMost_deg, frame_.pantoscopic_tilt_deg + kTiltBend_deg)));
+        const Eigen::Matrix3d rotation = TiltRotation(row.tilt_deg);
+        if (round == 0) {
+          z = RestingDepth({points_.contacts, {}}, relief_, rotation, 0, y, 0).value_or(z);
+        } else {
+          row.front_z = RestingDepth({{}, points_.front}, relief_, rotation, 0, y, 0);
+        }
+      }
+      rows_.push_back(row);
     }
-    Price(c);
-    return c;
   }
 
   void Price(Candidate& c) const {
@@ -216,12 +239,90 @@ class Fitter {
   std::array<Eigen::Vector3d, 2> pupils_;
   Obstacles points_;
   double target_height_;
+  std::vector<HeightRow> rows_;
 };
 
 bool HasPadArms(const FrameModel& frame) {
   return std::any_of(frame.parts.begin(), frame.parts.end(), [](const FramePart& part) {
     return part.name.find("pad arm") != std::string::npos;
   });
+}
+
+// How far pads may be moved outward and inward: bent on their arms, or filed and built up.
+struct PadRange {
+  double inward = 0, outward = 0;
+};
+PadRange PadRangeOf(const FrameModel& frame, const FitOptions& options) {
+  if (!options.adapt_bridge) return {};
+  if (HasPadArms(frame)) return {options.pad_travel_mm, options.pad_travel_mm};
+  if (frame.parameters) return {options.pad_build_up_mm, options.pad_filing_mm};
+  return {};
+}
+
+// The bridge sizes to try: the one the frame was loaded with first.
+std::vector<double> SizesOf(const FrameModel& frame, const FitOptions& options) {
+  std::vector<double> sizes = {frame.boxing.dbl_mm};
+  if (options.adapt_bridge && frame.parameters) {
+    for (const double size : frame.parameters->bridge_sizes_mm) {
+      if (std::abs(size - sizes[0]) > 0.05) sizes.push_back(size);
+    }
+  }
+  return sizes;
+}
+
+// A frame in the size and with the pads that serve a face best.
+struct BridgeChoice {
+  double dbl_mm = 0, shift = 0;
+  FrameModel frame;
+  Candidate best;
+};
+BridgeChoice ChooseBridge(const FrameModel& frame, const FaceRelief& relief, const EarPoints& ears,
+                          const Eigen::Vector3d& pupil_right, const Eigen::Vector3d& pupil_left,
+                          const FitOptions& options) {
+  BridgeChoice chosen;
+  for (const double size : SizesOf(frame, options)) {
+    const double change = size - frame.boxing.dbl_mm;
+    FrameModel made =
+        std::abs(change) < 0.05 ? frame : BuildFrame(WithBridge(*frame.parameters, size, 0));
+    const PadRange range = PadRangeOf(made, options);
+    const Fitter fitter(made, relief, ears, pupil_right, pupil_left, options);
+    bool better = false;
+    const double steps = std::ceil(range.inward / kShiftStep_mm);
+    for (double shift = -steps * kShiftStep_mm; shift <= range.outward + 1e-9;
+         shift += kShiftStep_mm) {
+      if (shift < -range.inward - 1e-9) continue;
+      Candidate tried = fitter.Best(shift);
+      tried.cost += kSizeWorth * change * change;
+      if (tried.cost < chosen.best.cost) {
+        chosen.best = tried;
+        chosen.shift = std::abs(shift) < 1e-9 ? 0 : shift;
+        better = true;
+      }
+    }
+    if (better) {
+      chosen.dbl_mm = size;
+      chosen.frame = std::move(made);
+    }
+  }
+  return chosen;
+}
+
+// What was done to the bridge, for the report.
+void NoteBridge(const FrameModel& made, const BridgeChoice& chosen, WearingPosition& wearing) {
+  if (std::abs(chosen.dbl_mm - made.boxing.dbl_mm) > 0.05) {
+    std::string sizes;
+    for (const double size : made.parameters->bridge_sizes_mm) {
+      sizes += fmt::format("{}{:g}", sizes.empty() ? "" : ", ", size);
+    }
+    wearing.notes.push_back(fmt::format("bridge size {:g} mm chosen for this nose (offered in {})",
+                                        chosen.dbl_mm, sizes));
+  }
+  if (chosen.shift == 0) return;
+  const char* how = HasPadArms(made)   ? (chosen.shift > 0 ? "bent outward" : "bent inward")
+                    : chosen.shift > 0 ? "filed back"
+                                       : "built up";
+  wearing.notes.push_back(
+      fmt::format("nose pads {} by {:.1f} mm a side", how, std::abs(chosen.shift)));
 }
 
 }  // namespace
@@ -249,27 +350,24 @@ Result<Fit> PlaceOnFace(const FrameModel& frame, const TriangleMesh& face,
   const double pd = (pupil_left - pupil_right).norm();
   Fit fit;
   fit.ears = options.ears.value_or(EstimateEars(face, pd));
-  Fitter fitter(frame, relief, fit.ears, pupil_right, pupil_left, options);
-
-  Candidate best = fitter.Best(0);
-  if (HasPadArms(frame)) {
-    for (double shift = -options.pad_travel_mm; shift <= options.pad_travel_mm + 1e-9;
-         shift += 0.5) {
-      const Candidate tried = fitter.Best(shift);
-      if (tried.cost < best.cost) {
-        best = tried;
-        fit.pad_shift_mm = shift;
-      }
-    }
-  }
+  const BridgeChoice chosen =
+      ChooseBridge(frame, relief, fit.ears, pupil_right, pupil_left, options);
+  Candidate best = chosen.best;
   if (!std::isfinite(best.cost)) {
     return Failure(
         "fit: the face has no nose below the frame's bridge, want a face mesh in head "
         "space, mm");
   }
-  fitter.Centre(fit.pad_shift_mm, best);
-  fit.frame = frame;
-  if (fit.pad_shift_mm != 0) ShiftPads(fit.frame, fit.pad_shift_mm);
+  fit.frame = chosen.frame;
+  fit.pad_shift_mm = chosen.shift;
+  if (chosen.shift != 0 && frame.parameters) {
+    // The pads as they would be made, with their own normals.
+    fit.frame = BuildFrame(WithBridge(*frame.parameters, chosen.dbl_mm, chosen.shift));
+  } else if (chosen.shift != 0) {
+    ShiftPads(fit.frame, chosen.shift);
+  }
+  const Fitter fitter(fit.frame, relief, fit.ears, pupil_right, pupil_left, options);
+  fitter.Settle(best);
 
   fit.head_from_frame.linear() = TiltRotation(best.tilt_deg);
   fit.head_from_frame.translation() << best.x, best.y, best.z;
@@ -294,13 +392,13 @@ Result<Fit> PlaceOnFace(const FrameModel& frame, const TriangleMesh& face,
   wearing.pantoscopic_tilt_deg = best.tilt_deg + options.nudge_deg.x();
   MeasureWearing(fit.frame, fit.head_from_frame, pupil_right, pupil_left, options.lens_depth_mm,
                  wearing);
-  Obstacles points = fitter.points();
-  points.contacts = fit.frame.nose_contacts;
+  const Obstacles& points = fitter.points();
   const double right = ContactDepth(points, relief, fit.head_from_frame, -1);
   const double left = ContactDepth(points, relief, fit.head_from_frame, 1);
   wearing.nose_penetration_mm = std::max({0.0, right, left});
   wearing.nose_gap_mm = std::max({0.0, -right, -left});
 
+  NoteBridge(frame, chosen, wearing);
   const double vertex = (wearing.vertex_distance_right_mm + wearing.vertex_distance_left_mm) / 2;
   if (vertex < options.min_vertex_mm - 0.05 || vertex > options.max_vertex_mm + 0.05) {
     wearing.notes.push_back(

@@ -27,17 +27,23 @@ struct FitOptions {
   std::optional<double> pupil_height_mm;          // above the boxing centre; absent: by lens height
   std::optional<double> tilt_deg;                 // pantoscopic; absent: as the ears have it
   std::optional<EarPoints> ears;                  // absent: estimated
-  double pad_travel_mm = 3;                       // how far pads on arms may be bent sideways
-  Eigen::Vector3d nudge_mm{0, 0, 0};              // afterwards, head axes
-  Eigen::Vector3d nudge_deg{0, 0, 0};             // about head x, y, z through the bridge
+  // Whether the bridge is chosen for the nose, as an optician would: among the sizes the frame is
+  // offered in, pads on arms bent, acetate pads filed back or built up. Parametric frames only,
+  // but for the arms.
+  bool adapt_bridge = true;
+  double pad_travel_mm = 3;            // how far pads on arms may be bent sideways
+  double pad_filing_mm = 1.5;          // how far acetate pads may be filed back
+  double pad_build_up_mm = 2;          // and built up
+  Eigen::Vector3d nudge_mm{0, 0, 0};   // afterwards, head axes
+  Eigen::Vector3d nudge_deg{0, 0, 0};  // about head x, y, z through the bridge
 };
 
 struct Fit {
-  FrameModel frame;  // as adjusted: pads bent, temples opened to the ears
+  FrameModel frame;  // as adjusted: bridge chosen, pads moved, temples opened to the ears
   Eigen::Isometry3d head_from_frame = Eigen::Isometry3d::Identity();
   WearingPosition wearing;
   EarPoints ears;
-  double pad_shift_mm = 0;        // each pad moved outward by this much
+  double pad_shift_mm = 0;        // each pad's face moved outward by this much
   double temple_opening_deg = 0;  // mean swing of the temples about their hinges, outward positive
 };
 

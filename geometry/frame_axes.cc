@@ -3,6 +3,8 @@
 
 #include <fmt/format.h>
 
+#include <Eigen/Eigenvalues>
+#include <Eigen/Geometry>
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -10,7 +12,7 @@
 #include <set>
 
 #include "base/units.h"
-#include "geometry/contour.h"
+#include "geometry/silhouette.h"
 
 namespace lorgnette {
 namespace {
@@ -20,6 +22,10 @@ constexpr double kSilliestWidth_mm = 90, kWidestWidth_mm = 190;  // for a unit t
 constexpr double kLeastOpening_mm2 = 250;
 constexpr double kFlatFront_mm = 40;  // less deep than this: there are no temples
 constexpr double kMirrorCell = 0.02;  // of the extent
+constexpr double kMirrorGain = 0.1;   // by which other axes must be better than the file's
+constexpr double kSymmetric = 0.6;  // share of mirrored vertices that makes an axis the one across
+constexpr double kLikeSize = 0.7, kLeastFill = 0.55, kLongestLens = 3;
+constexpr double kFrontStep_deg = 15;
 
 struct Box {
   Eigen::Vector3d low, high;
@@ -45,16 +51,70 @@ TriangleMesh Turned(const TriangleMesh& mesh, const Eigen::Matrix3d& turn) {
   return turned;
 }
 
-// Two openings of like size beside each other.
+// Two openings (or lenses) of like size beside each other.
 struct Openings {
-  SilhouetteHole a, b;
+  SilhouetteRegion a, b;
   double least() const { return std::min(a.area_mm2, b.area_mm2); }
 };
+std::optional<Openings> TwoOfLikeSize(const std::vector<SilhouetteRegion>& regions) {
+  if (regions.size() < 2 || regions[1].area_mm2 < kLeastOpening_mm2) return std::nullopt;
+  if (regions[1].area_mm2 < kLikeSize * regions[0].area_mm2) return std::nullopt;
+  return Openings{regions[0], regions[1]};
+}
 std::optional<Openings> FindOpenings(const TriangleMesh& mesh) {
-  const std::vector<SilhouetteHole> holes = SilhouetteHoles(mesh);
-  if (holes.size() < 2 || holes[1].area_mm2 < kLeastOpening_mm2) return std::nullopt;
-  if (holes[1].area_mm2 < 0.7 * holes[0].area_mm2) return std::nullopt;
-  return Openings{holes[0], holes[1]};
+  return TwoOfLikeSize(SilhouetteHoles(mesh));
+}
+// Two discs and nothing else, each on its own side and filling its box as a lens does.
+std::optional<Openings> FindDiscs(const TriangleMesh& lenses) {
+  std::vector<SilhouetteRegion> discs = SilhouetteDiscs(lenses);
+  std::erase_if(discs, [](const SilhouetteRegion& d) { return d.area_mm2 < kLeastOpening_mm2; });
+  const auto two = discs.size() == 2 ? TwoOfLikeSize(discs) : std::nullopt;
+  if (!two) return std::nullopt;
+  for (const SilhouetteRegion& disc : discs) {
+    const Eigen::Vector2d size = disc.high - disc.low;
+    if (disc.area_mm2 < kLeastFill * size.x() * size.y()) return std::nullopt;
+    if (size.maxCoeff() > kLongestLens * size.minCoeff()) return std::nullopt;
+  }
+  const bool apart = two->a.high.x() < two->b.low.x() || two->b.high.x() < two->a.low.x();
+  return apart ? two : std::nullopt;
+}
+
+// Axes of the surface's second moments, as rows: one of them is square to a plane of symmetry.
+Eigen::Matrix3d PrincipalAxes(const TriangleMesh& mesh) {
+  Eigen::Vector3d sum(0, 0, 0);
+  double total = 0;
+  const auto for_each = [&](const auto& take) {
+    for (const Eigen::Vector3i& t : mesh.triangles) {
+      const Eigen::Vector3d& a = mesh.positions[std::size_t(t[0])];
+      const Eigen::Vector3d& b = mesh.positions[std::size_t(t[1])];
+      const Eigen::Vector3d& c = mesh.positions[std::size_t(t[2])];
+      take((b - a).cross(c - a).norm() / 2, Eigen::Vector3d((a + b + c) / 3));
+    }
+  };
+  for_each([&](double area, const Eigen::Vector3d& p) {
+    sum += area * p;
+    total += area;
+  });
+  if (!(total > 0)) return Eigen::Matrix3d::Identity();
+  Eigen::Matrix3d moments = Eigen::Matrix3d::Zero();
+  for_each([&](double area, const Eigen::Vector3d& p) {
+    const Eigen::Vector3d d = p - sum / total;
+    moments += area / total * d * d.transpose();
+  });
+  Eigen::Matrix3d axes =
+      Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d>(moments).eigenvectors().transpose();
+  if (axes.determinant() < 0) axes.row(0) *= -1;
+  return axes;
+}
+
+// The axis that the mesh is most symmetric across, and how much.
+std::pair<int, double> MostSymmetric(const TriangleMesh& mesh) {
+  std::pair<int, double> best(0, -1);
+  for (int axis = 0; axis < 3; ++axis) {
+    const double share = MirrorShare(mesh, axis);
+    if (share > best.second) best = {axis, share};
+  }
+  return best;
 }
 
 Eigen::Matrix3d AxisMatrix(int x, int y, int z) {
@@ -68,7 +128,7 @@ Eigen::Matrix3d AxisMatrix(int x, int y, int z) {
 double FrontDepth(const TriangleMesh& mesh, const Openings& openings) {
   std::vector<double> depths;
   for (const Eigen::Vector3d& p : mesh.positions) {
-    for (const SilhouetteHole* hole : {&openings.a, &openings.b}) {
+    for (const SilhouetteRegion* hole : {&openings.a, &openings.b}) {
       const double radius = std::sqrt(hole->area_mm2 / kPi);
       if ((p.head<2>() - hole->centre).norm() < 1.35 * radius) {
         depths.push_back(p.z());
@@ -135,18 +195,22 @@ double MirrorShare(const TriangleMesh& mesh, int axis) {
   return double(found) / double(std::max<std::size_t>(1, mesh.positions.size()));
 }
 
-std::optional<FrameAxes> FindFrameAxes(const TriangleMesh& mesh, std::optional<double> unit_mm) {
-  int side = 0;
-  double best_share = -1;
-  for (int axis = 0; axis < 3; ++axis) {
-    const double share = MirrorShare(mesh, axis);
-    if (share > best_share) {
-      best_share = share;
-      side = axis;
+std::optional<FrameAxes> FindFrameAxes(const TriangleMesh& mesh, std::optional<double> unit_mm,
+                                       const TriangleMesh* lenses) {
+  Eigen::Matrix3d base = Eigen::Matrix3d::Identity();  // file to axes that fit the glasses
+  auto [side, share] = MostSymmetric(mesh);
+  bool turned_in_space = false;
+  if (share < kSymmetric) {
+    const Eigen::Matrix3d principal = PrincipalAxes(mesh);
+    const auto [other, other_share] = MostSymmetric(Turned(mesh, principal));
+    if (other_share > share + kMirrorGain) {
+      base = principal;
+      side = other;
+      turned_in_space = true;
     }
   }
-  const double width = BoxOf(mesh).size()[side];
-  if (!(width > 0)) return std::nullopt;
+  const double width = BoxOf(Turned(mesh, base)).size()[side];
+  if (!(width > 0) || !std::isfinite(width)) return std::nullopt;
 
   FrameAxes axes;
   double scale = unit_mm.value_or(0);
@@ -170,13 +234,35 @@ std::optional<FrameAxes> FindFrameAxes(const TriangleMesh& mesh, std::optional<d
 
   std::optional<Openings> openings;
   Eigen::Matrix3d turn = Eigen::Matrix3d::Identity();
-  for (const auto& [y, z] :
-       {std::pair((side + 1) % 3, (side + 2) % 3), std::pair((side + 2) % 3, (side + 1) % 3)}) {
-    const Eigen::Matrix3d tried = scale * AxisMatrix(side, y, z);
-    const auto found = FindOpenings(Turned(mesh, tried));
+  const auto look = [&](const Eigen::Matrix3d& tried) {
+    const auto found =
+        lenses != nullptr ? FindDiscs(Turned(*lenses, tried)) : FindOpenings(Turned(mesh, tried));
     if (found && (!openings || found->least() > openings->least())) {
       openings = found;
       turn = tried;
+    }
+  };
+  const Eigen::Matrix3d first = scale * AxisMatrix(side, (side + 1) % 3, (side + 2) % 3) * base;
+  if (!turned_in_space) {
+    look(first);
+    look(scale * AxisMatrix(side, (side + 2) % 3, (side + 1) % 3) * base);
+  }
+  if (!openings) {
+    for (double angle = 0; angle < 180; angle += kFrontStep_deg) {
+      look(Eigen::AngleAxisd(RadiansFromDegrees(angle), Eigen::Vector3d::UnitX())
+               .toRotationMatrix() *
+           first);
+    }
+    for (double step = kFrontStep_deg / 2; openings && step > 3; step /= 2) {
+      const Eigen::Matrix3d from = turn;
+      for (const double angle : {-step, step}) {
+        look(Eigen::AngleAxisd(RadiansFromDegrees(angle), Eigen::Vector3d::UnitX())
+                 .toRotationMatrix() *
+             from);
+      }
+    }
+    if (openings) {
+      axes.notes.push_back("turned: the file's axes are not those of the glasses");
     }
   }
   if (!openings) return std::nullopt;
@@ -186,12 +272,14 @@ std::optional<FrameAxes> FindFrameAxes(const TriangleMesh& mesh, std::optional<d
   const bool temples = box.size().z() > kFlatFront_mm;
   if (!temples) axes.notes.push_back("no temples found: the file's own front is kept");
   if (temples && FrontDepth(turned, *openings) < box.middle().z()) {
-    turn = Eigen::Vector3d(-1, 1, -1).asDiagonal() * turn;
+    turn = Eigen::Matrix3d(Eigen::Vector3d(-1, 1, -1).asDiagonal() * turn);
     turned = Turned(mesh, turn);
     box = BoxOf(turned);
-    for (SilhouetteHole* hole : {&openings->a, &openings->b}) hole->centre.x() *= -1;
+    for (SilhouetteRegion* hole : {&openings->a, &openings->b}) hole->centre.x() *= -1;
   }
-  if (Upness(turned, box, *openings) < 0) turn = Eigen::Vector3d(-1, -1, 1).asDiagonal() * turn;
+  if (Upness(turned, box, *openings) < 0) {
+    turn = Eigen::Matrix3d(Eigen::Vector3d(-1, -1, 1).asDiagonal() * turn);
+  }
   axes.frame_from_file = turn;
   return axes;
 }

@@ -21,7 +21,12 @@ double MirrorShare(const TriangleMesh& mesh, int axis);
 
 //   mesh     the glasses without lenses, file coordinates
 //   unit_mm  mm per file unit where known; an implausible one is told and replaced
-// nullopt when two openings are seen along no axis.
-std::optional<FrameAxes> FindFrameAxes(const TriangleMesh& mesh, std::optional<double> unit_mm);
+//   lenses   where given, their two discs are looked for in place of two openings (half rim,
+//   rimless)
+// The file's axes are taken where the glasses are symmetric across one of them; else the plane of
+// symmetry is found by the mesh's principal axes. The front is then looked for in steps of 15
+// degrees around the axis across. nullopt when two openings (discs) are seen from nowhere.
+std::optional<FrameAxes> FindFrameAxes(const TriangleMesh& mesh, std::optional<double> unit_mm,
+                                       const TriangleMesh* lenses = nullptr);
 
 }  // namespace lorgnette

@@ -16,6 +16,8 @@
 #include "geometry/contour.h"
 #include "geometry/frame_axes.h"
 #include "geometry/mesh_check.h"
+#include "geometry/mesh_repair.h"
+#include "geometry/silhouette.h"
 #include "geometry/sweep.h"
 
 namespace lorgnette {
@@ -27,6 +29,10 @@ constexpr double kDemoLensFill = 0.55;  // of its own box: a disc, not a ring
 constexpr double kEarBehindFront_mm = 98;
 constexpr double kSlice_mm = 3;
 constexpr double kBendDrop_mm = 2.5;
+// Boxing that glasses can have.
+constexpr double kLeastA_mm = 25, kGreatestA_mm = 90, kLeastB_mm = 12, kGreatestB_mm = 80;
+constexpr double kLeastDbl_mm = 3, kGreatestDbl_mm = 45;
+constexpr double kHalfRimShare = 0.2;        // of a lens' edge that a rim holds
 constexpr std::size_t kMostPartsTried = 12;  // as unnamed lenses, alone and in pairs
 
 std::string Lower(std::string text) {
@@ -47,6 +53,7 @@ TriangleMesh Extract(const TriangleMesh& mesh, const std::vector<std::size_t>& t
       if (fresh) {
         part.positions.push_back(mesh.positions[std::size_t(from)]);
         if (!mesh.normals.empty()) part.normals.push_back(mesh.normals[std::size_t(from)]);
+        if (!mesh.uvs.empty()) part.uvs.push_back(mesh.uvs[std::size_t(from)]);
       }
       corners[k] = at->second;
     }
@@ -92,6 +99,18 @@ Extent ExtentOf(const TriangleMesh& mesh) {
   return extent;
 }
 
+double Area(const TriangleMesh& mesh) {
+  double area = 0;
+  for (const Eigen::Vector3i& t : mesh.triangles) {
+    const Eigen::Vector3d& a = mesh.positions[std::size_t(t[0])];
+    area += (mesh.positions[std::size_t(t[1])] - a)
+                .cross(mesh.positions[std::size_t(t[2])] - a)
+                .norm() /
+            2;
+  }
+  return area;
+}
+
 // A filled disc of a lens' size beside the middle, seen along z.
 bool ShapedLikeALens(const TriangleMesh& mesh) {
   const Extent e = ExtentOf(mesh);
@@ -134,7 +153,7 @@ class Importer {
     return all;
   }
 
-  // Lenses that neither name nor material tells fill the openings: the axes when the given parts
+  // Full rims whose lenses neither name nor material tells: the axes when the given parts
   // are left out too.
   std::optional<FrameAxes> AxesWithout(std::size_t a, std::size_t b) {
     if (demo_[a] || demo_[b]) return std::nullopt;
@@ -144,27 +163,69 @@ class Importer {
     return axes;
   }
 
+  // A half rim or no rim: the two lenses stand for the openings. Parts i and j are taken for them
+  // where neither name nor material tells.
+  std::optional<FrameAxes> AxesByLenses() const {
+    TriangleMesh lenses;
+    for (std::size_t i = 0; i < demo_.size(); ++i) {
+      if (demo_[i]) Append(lenses, file_.parts[i].mesh);
+    }
+    if (lenses.empty()) return std::nullopt;
+    TriangleMesh all = WithoutLenses();
+    Append(all, lenses);
+    return FindFrameAxes(all, unit_mm_, &lenses);
+  }
+  std::optional<FrameAxes> AxesByLenses(std::size_t i, std::size_t j) {
+    if (demo_[i] || demo_[j]) return std::nullopt;
+    demo_[i] = demo_[j] = true;
+    auto axes = AxesByLenses();
+    if (!axes) demo_[i] = demo_[j] = false;
+    return axes;
+  }
+
+  // The first answer of `ask` to one part alone, or to a pair, among those of the largest surface.
+  template <typename Ask>
+  std::optional<FrameAxes> FirstOfParts(const Ask& ask) {
+    std::vector<std::pair<double, std::size_t>> largest;
+    for (std::size_t i = 0; i < file_.parts.size(); ++i) {
+      largest.emplace_back(-Area(file_.parts[i].mesh), i);
+    }
+    std::sort(largest.begin(), largest.end());
+    const std::size_t parts = std::min(largest.size(), kMostPartsTried);
+    for (std::size_t apart = 0; apart < 2; ++apart) {
+      for (std::size_t i = 0; i + apart < parts; ++i) {
+        for (std::size_t j = i + apart; j < (apart == 0 ? i + 1 : parts); ++j) {
+          if (auto axes = ask(largest[i].second, largest[j].second)) return axes;
+        }
+      }
+    }
+    return std::nullopt;
+  }
+
   Status Orient() {
     for (const ModelPart& part : file_.parts) {
       const std::string lower = Lower(part.name);
       demo_.push_back(Has(lower, "lens") || (part.transparent && !Has(lower, "pad")));
     }
     auto axes = FindFrameAxes(WithoutLenses(), unit_mm_);
-    const std::size_t parts = file_.parts.size();
-    for (std::size_t apart = 0; apart < 2 && !axes && parts <= kMostPartsTried; ++apart) {
-      for (std::size_t i = 0; i + apart < parts && !axes; ++i) {
-        for (std::size_t j = i + apart; j < (apart == 0 ? i + 1 : parts) && !axes; ++j) {
-          axes = AxesWithout(i, j);
-        }
+    if (!axes) {
+      axes = FirstOfParts([&](std::size_t i, std::size_t j) { return AxesWithout(i, j); });
+    }
+    if (!axes) {
+      axes = AxesByLenses();
+      if (!axes) {
+        axes = FirstOfParts([&](std::size_t i, std::size_t j) { return AxesByLenses(i, j); });
       }
+      by_lenses_ = axes.has_value();
     }
     if (!axes) {
       return Failure(name_ +
-                     ": no closed rim: two openings of like size are seen from no side, want a "
-                     "full-rim frame");
+                     ": no closed rim: two openings of like size are seen from no side, and no two "
+                     "lenses; want a frame with rims or with its demo lenses");
     }
     turn_ = axes->frame_from_file;
-    frame_.notes = axes->notes;
+    frame_.notes = file_.notes;
+    frame_.notes.insert(frame_.notes.end(), axes->notes.begin(), axes->notes.end());
     const Extent extent = ExtentOf(WithoutLenses());
     middle_x_ = (turn_ * (extent.low + extent.high)).x() / 2;
     return {};
@@ -185,37 +246,38 @@ class Importer {
 
   void SplitParts() {
     std::vector<TriangleMesh> meshes;
+    MeshRepair repaired;
     front_z_ = -std::numeric_limits<double>::infinity();
     double width = 0;
     for (std::size_t i = 0; i < file_.parts.size(); ++i) {
       meshes.push_back(InFrame(file_.parts[i].mesh));
+      repaired.points_joined += JoinNearPoints(meshes.back());
       if (demo_[i]) continue;
       const Extent e = ExtentOf(meshes.back());
       front_z_ = std::max(front_z_, e.high.z());
       width = std::max(width, e.high.x());
     }
-    int flipped = 0;
     for (std::size_t i = 0; i < meshes.size(); ++i) {
       const ModelPart& from = file_.parts[i];
       if (demo_[i]) {
         frame_.notes.push_back("demo lens taken out: " + from.name);
+        Append(lenses_, meshes[i]);
         continue;
       }
       for (const std::vector<std::size_t>& piece : Pieces(meshes[i])) {
         TriangleMesh mesh = Extract(meshes[i], piece);
         if (ShapedLikeALens(mesh)) {
           frame_.notes.push_back("demo lens taken out by its shape: " + from.name);
+          Append(lenses_, mesh);
           continue;
         }
-        if (CheckMesh(mesh, false).closed() && SignedVolume(mesh) < 0) {
-          for (Eigen::Vector3i& t : mesh.triangles) std::swap(t[1], t[2]);
-          ComputeVertexNormals(mesh);
-          ++flipped;
-        }
+        repaired += RepairMesh(mesh);
+        if (mesh.empty()) continue;
         Sort(from, std::move(mesh), width);
       }
     }
-    if (flipped > 0) frame_.notes.push_back(fmt::format("{} pieces turned outside out", flipped));
+    const std::vector<std::string> repairs = repaired.Sentences();
+    frame_.notes.insert(frame_.notes.end(), repairs.begin(), repairs.end());
   }
 
   // Gives a connected piece its kind; one that runs from the front into a temple is divided.
@@ -247,25 +309,44 @@ class Importer {
 
   Status MeasureFront() {
     const TriangleMesh front = PartsOfKind(frame_, FramePartKind::kFront);
-    auto traced = TraceOpenings(front);
+    auto traced = by_lenses_ ? TraceLenses(lenses_) : TraceOpenings(front);
     if (!traced) return Failure(name_ + ": " + traced.error().message);
+    const Boxing& box = traced->boxing;
+    if (box.a_mm < kLeastA_mm || box.a_mm > kGreatestA_mm || box.b_mm < kLeastB_mm ||
+        box.b_mm > kGreatestB_mm || box.dbl_mm < kLeastDbl_mm || box.dbl_mm > kGreatestDbl_mm) {
+      return Failure(fmt::format(
+          "{}: got openings of A {:.1f}, B {:.1f}, DBL {:.1f} mm, want A {}..{}, B {}..{}, DBL "
+          "{}..{}: no glasses, or another unit",
+          name_, box.a_mm, box.b_mm, box.dbl_mm, kLeastA_mm, kGreatestA_mm, kLeastB_mm,
+          kGreatestB_mm, kLeastDbl_mm, kGreatestDbl_mm));
+    }
     frame_.right = std::move(traced->right);
     frame_.left = std::move(traced->left);
     frame_.boxing = traced->boxing;
     frame_.face_form_deg = traced->face_form_deg;
     frame_.frame_curve_diopters = traced->frame_curve_diopters;
+    if (by_lenses_) {
+      const double share = (RimShare(front, frame_.right) + RimShare(front, frame_.left)) / 2;
+      frame_.mount = share > kHalfRimShare ? FrameMount::kHalfRim : FrameMount::kRimless;
+      frame_.notes.push_back(fmt::format("{}: the lens shape is that of the demo lenses",
+                                         share > kHalfRimShare ? "half rim" : "rimless"));
+    }
     return {};
   }
 
   // Origin midway between the boxing centres, the openings' planes upright.
   void Upright() {
-    const Eigen::Vector3d axis = frame_.right.frame_from_opening.linear().col(2) +
-                                 frame_.left.frame_from_opening.linear().col(2);
-    const Eigen::AngleAxisd turn(std::atan2(axis.y(), axis.z()), Eigen::Vector3d::UnitX());
-    const Eigen::Vector3d middle = (frame_.right.frame_from_opening.translation() +
-                                    frame_.left.frame_from_opening.translation()) /
-                                   2;
-    const Eigen::Isometry3d move = turn * Eigen::Translation3d(-middle);
+    const Eigen::Isometry3d &right = frame_.right.frame_from_opening,
+                            &left = frame_.left.frame_from_opening;
+    // From one boxing centre to the other is across; the openings' mean axis is forward.
+    const Eigen::Vector3d across = (left.translation() - right.translation()).normalized();
+    const Eigen::Vector3d mean = right.linear().col(2) + left.linear().col(2);
+    const Eigen::Vector3d forward = (mean - mean.dot(across) * across).normalized();
+    Eigen::Matrix3d upright;
+    upright << across, forward.cross(across), forward;
+    const Eigen::Isometry3d move =
+        Eigen::Isometry3d(upright.transpose()) *
+        Eigen::Translation3d(-(right.translation() + left.translation()) / 2);
     for (FramePart& part : frame_.parts) {
       for (Eigen::Vector3d& p : part.mesh.positions) p = move * p;
       for (Eigen::Vector3d& n : part.mesh.normals) n = move.linear() * n;
@@ -392,6 +473,8 @@ class Importer {
   std::string name_;
   std::optional<double> unit_mm_;
   std::vector<bool> demo_;
+  bool by_lenses_ = false;  // no closed rims: the lenses tell the shape
+  TriangleMesh lenses_;     // demo lenses, frame coordinates
   Eigen::Matrix3d turn_ = Eigen::Matrix3d::Identity();
   double middle_x_ = 0, front_z_ = 0;
   FrameModel frame_;

@@ -10,6 +10,7 @@
 #include "cmake/source_dir.h"
 #include "geometry/frame_import.h"
 #include "geometry/model_file.h"
+#include "geometry/oma.h"
 #include "geometry/parametric_frame.h"
 
 namespace lorgnette {
@@ -25,6 +26,22 @@ bool HasFrames(const fs::path& data) {
 Result<FrameParameters> ReadParameters(const std::string& path) {
   LG_ASSIGN(const std::string text, ReadFile(path));
   return ParseFrameParameters(text, path);
+}
+
+std::string ShippedPath(const std::string& name) {
+  return (fs::path(DataDirectory()) / "frames" / (name + ".json")).string();
+}
+
+// The frame of a lab trace, in the make that its FTYP names: 2 metal, else plastic.
+Result<FrameModel> LoadTrace(const std::string& path) {
+  LG_ASSIGN(const std::string bytes, ReadFile(path));
+  LG_ASSIGN(const OmaFile job, OmaFile::Parse(bytes, path));
+  const bool metal = job.Get("FTYP").value_or("1") == "2";
+  LG_ASSIGN(FrameParameters style, ReadParameters(ShippedPath(metal ? "round" : "panto")));
+  style.name = fs::path(path).stem().string();
+  style.rim.flares.clear();
+  style.bridge_sizes_mm.clear();  // the trace has one
+  return FrameAroundTrace(job, std::move(style));
 }
 
 }  // namespace
@@ -80,6 +97,7 @@ Result<FrameModel> LoadFrame(const std::string& name_or_path, std::optional<doub
     LG_ASSIGN(const FrameParameters parameters, ReadParameters(name_or_path));
     return BuildFrame(parameters);
   }
+  if (extension == ".oma") return LoadTrace(name_or_path);
   LG_ASSIGN(const ModelFile model, ReadModelFile(name_or_path));
   return ImportFrame(model, name_or_path, unit_mm);
 }

@@ -25,7 +25,8 @@ std::string DataDirectory();
 // In the order of their names. Fails when the folder is missing or a file in it cannot be read.
 Result<std::vector<ShippedFrame>> ListShippedFrames();
 
-// A shipped frame by name, a .json file of frame parameters, or a model file (.glb, .gltf, .obj,
+// A shipped frame by name, a .json file of frame parameters, a lab trace (.oma: a frame is built
+// around it, of metal where FTYP says so, else of acetate), or a model file (.glb, .gltf, .obj,
 // .ply, .stl; geometry/frame_import.h) by path.
 //   unit_mm  mm per unit of the file, where the file does not say
 Result<FrameModel> LoadFrame(const std::string& name_or_path,

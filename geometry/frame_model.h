@@ -7,28 +7,28 @@
 #pragma once
 
 #include <Eigen/Geometry>
+#include <memory>
 #include <string>
 #include <vector>
 
 #include "base/mesh.h"
+#include "geometry/frame_material.h"
 
 namespace lorgnette {
 
-enum class FramePartKind { kFront, kTemple, kNosePad, kHinge, kDemoLens, kOther };
+struct FrameParameters;
 
-// Phong appearance (paper, V-A). Colours linear Rec.709.
-struct FrameMaterial {
-  Eigen::Vector3f diffuse{0.02f, 0.02f, 0.02f};
-  Eigen::Vector3f specular{0.04f, 0.04f, 0.04f};
-  float shininess = 60;
-};
+enum class FramePartKind { kFront, kTemple, kNosePad, kHinge, kDemoLens, kOther };
 
 struct FramePart {
   std::string name;
   FramePartKind kind = FramePartKind::kOther;
-  TriangleMesh mesh;  // frame coordinates, with normals
+  TriangleMesh mesh;  // frame coordinates, with normals; uvs where the file has them
   FrameMaterial material;
 };
+
+// What holds the lenses.
+enum class FrameMount { kFullRim, kHalfRim, kRimless };
 
 // One lens opening. Opening coordinates: origin at the boxing centre in the opening's own plane,
 // +x toward the wearer's left and +y up in that plane, +z away from the face.
@@ -53,6 +53,7 @@ struct Boxing {
 struct FrameModel {
   std::string name;
   std::vector<FramePart> parts;
+  FrameMount mount = FrameMount::kFullRim;
   LensOpening right, left;
   Boxing boxing;
   double pantoscopic_tilt_deg = 8;  // of the front to the temples
@@ -64,6 +65,9 @@ struct FrameModel {
   Eigen::Vector3d ear_point_right{0, 0, 0}, ear_point_left{0, 0, 0};
   double face_form_deg = 0, frame_curve_diopters = 0;  // of the openings, tooling index 1.530
   std::vector<std::string> notes;  // what a loader guessed or repaired: "unit guessed: ..."
+  // What a parametric frame was built from, so that it can be made in another bridge size; null for
+  // a frame from a model.
+  std::shared_ptr<const FrameParameters> parameters;
 };
 
 }  // namespace lorgnette

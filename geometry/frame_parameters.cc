@@ -21,6 +21,7 @@ class Reader {
     p.a_mm = boxing.Number("A", 30, 80);
     p.b_mm = boxing.Number("B", 15, 70);
     p.dbl_mm = boxing.Number("DBL", 8, 35);
+    if (root_.Has("bridge_sizes")) ReadSizes(p);
     ReadOutline(p);
     JsonReader front = root_.Object("front");
     p.pantoscopic_tilt_deg = front.Number("pantoscopic_tilt", -5, 25);
@@ -45,6 +46,15 @@ class Reader {
   Status Finish() const { return root_.Finish(); }
 
  private:
+  void ReadSizes(FrameParameters& p) {
+    p.bridge_sizes_mm = root_.Numbers("bridge_sizes");
+    for (const double size : p.bridge_sizes_mm) {
+      if (!(size >= 8 && size <= 35)) {
+        root_.Fail("bridge_sizes", "got " + std::to_string(size) + ", want 8..35");
+      }
+    }
+  }
+
   void ReadOutline(FrameParameters& p) {
     const std::vector<double> numbers = root_.Numbers("outline");
     const std::size_t count = numbers.size() / 2;

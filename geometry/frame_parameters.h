@@ -73,6 +73,7 @@ struct TempleParameters {
 struct FrameParameters {
   std::string name, description;
   double a_mm = 50, b_mm = 40, dbl_mm = 18;  // boxing, of the groove bottom
+  std::vector<double> bridge_sizes_mm;       // the DBL values it is offered in; empty: dbl_mm alone
   Polygon2 outline;                          // control points of a ClosedSpline, any size
   double pantoscopic_tilt_deg = 8, face_form_deg = 4;
   double frame_curve_diopters = 3;  // of the groove, at tooling index 1.530

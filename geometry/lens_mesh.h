@@ -23,12 +23,15 @@ struct LensMeshOptions {
   int edge_points = 360;         // around the edge
   double bevel_height_mm = 0;    // 0: flat wall along the axis
   double bevel_angle_deg = 115;  // between the flanks
-  double bevel_position = 0.5;   // apex, fraction of the edge thickness from the front
+  double groove_width_mm = 0;    // 0: none; not with a bevel
+  double groove_depth_mm = 0.5;
+  std::vector<double> apex_z_mm;  // of bevel or groove, one a contour point; empty: mid-edge
 };
 
 // The plane region is triangulated once (constrained Delaunay, refined to the element size) and
 // lifted to both surfaces, with their normals; the wall joins the two rims, over the bevel where
-// there is one (its apex runs on the contour, and the surfaces end bevel_height_mm inside).
+// there is one (its apex runs on the contour, and the surfaces end bevel_height_mm inside), or
+// through the groove (a rectangular channel, as wide as the edge leaves room for).
 // Creases have a vertex for each side at one position: merged by position the mesh is closed.
 Result<TriangleMesh> BuildLensMesh(const Lens& lens, const std::vector<Eigen::Vector2d>& contour_mm,
                                    const LensMeshOptions& options);

@@ -43,8 +43,9 @@ Result<ModelFile> ReadModelFile(const std::string& path) {
                       "\", want .glb, .gltf, .obj, .ply or .stl");
   }
   LG_ASSIGN(const std::string bytes, ReadFile(path));
-  Result<ModelFile> model = gltf ? ParseGltf(bytes, path, file.parent_path().string())
-                            : extension == ".obj" ? ParseObj(bytes, path)
+  const std::string folder = file.has_parent_path() ? file.parent_path().string() : ".";
+  Result<ModelFile> model = gltf                  ? ParseGltf(bytes, path, folder)
+                            : extension == ".obj" ? ParseObj(bytes, path, folder)
                             : extension == ".ply" ? ParsePly(bytes, path)
                                                   : ParseStl(bytes, path);
   if (model) LG_RETURN_IF_ERROR(CheckModel(*model, path));

@@ -23,14 +23,17 @@ struct ModelPart {
 struct ModelFile {
   std::vector<ModelPart> parts;
   std::optional<double> mm_per_unit;  // known for glTF (1000), otherwise absent
+  std::vector<std::string> notes;     // what was left out: "materials left out: ..."
 };
 
 // By the file's extension. Every error names the file and what is wrong with it: a missing buffer,
 // an index out of range, a number that is not finite, a file without triangles.
 Result<ModelFile> ReadModelFile(const std::string& path);
 
-// The same from bytes; `name` stands in errors. glTF: `folder` is where its buffers lie.
-Result<ModelFile> ParseObj(std::string_view text, const std::string& name);
+// The same from bytes; `name` stands in errors. `folder` is where buffers, materials and pictures
+// lie; OBJ without: materials are passed over.
+Result<ModelFile> ParseObj(std::string_view text, const std::string& name,
+                           const std::string& folder = "");
 Result<ModelFile> ParsePly(std::string_view bytes, const std::string& name);
 Result<ModelFile> ParseStl(std::string_view bytes, const std::string& name);
 Result<ModelFile> ParseGltf(std::string_view bytes, const std::string& name,

@@ -1,12 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
-// glTF 2.0 through tinygltf: node tree, triangles, base colour, metal and roughness, transmission.
-// Base-colour textures count by their mean colour.
+// glTF 2.0 through tinygltf: node tree, triangles, texture coordinates; materials beside
+// (geometry/gltf_material.h).
 #include <tiny_gltf.h>
 
 #include <Eigen/Geometry>
-#include <cmath>
+#include <algorithm>
 #include <cstring>
 
+#include "geometry/gltf_material.h"
 #include "geometry/model_file.h"
 
 namespace lorgnette {
@@ -14,13 +15,10 @@ namespace {
 
 constexpr int kMaxNodeDepth = 64;
 
-float LinearFromSrgb(float c) {
-  return c <= 0.04045f ? c / 12.92f : std::pow((c + 0.055f) / 1.055f, 2.4f);
-}
-
 class GltfReader {
  public:
-  GltfReader(const tinygltf::Model& gltf, const std::string& name) : gltf_(gltf), name_(name) {}
+  GltfReader(const tinygltf::Model& gltf, const std::string& name)
+      : gltf_(gltf), name_(name), materials_(gltf) {}
 
   Result<ModelFile> Read() {
     model_.mm_per_unit = 1000;
@@ -172,57 +170,63 @@ class GltfReader {
     bool good = part.mesh.normals.size() == part.mesh.positions.size();
     for (const Eigen::Vector3d& n : part.mesh.normals) good = good && n.allFinite();
     if (!good) ComputeVertexNormals(part.mesh);
-    if (primitive.material >= 0 && std::size_t(primitive.material) < gltf_.materials.size()) {
-      ReadMaterial(gltf_.materials[std::size_t(primitive.material)], part);
-    }
+    LG_RETURN_IF_ERROR(ReadMaterial(primitive, part));
     model_.parts.push_back(std::move(part));
     return {};
   }
 
-  Eigen::Vector3f MeanColour(int texture) const {
-    const Eigen::Vector3f white(1, 1, 1);
-    if (texture < 0 || std::size_t(texture) >= gltf_.textures.size()) return white;
-    const int source = gltf_.textures[std::size_t(texture)].source;
-    if (source < 0 || std::size_t(source) >= gltf_.images.size()) return white;
-    const tinygltf::Image& image = gltf_.images[std::size_t(source)];
-    if (image.bits != 8 || image.component < 3 || image.image.empty()) return white;
-    const std::size_t step = std::size_t(image.component);
-    Eigen::Vector3d sum(0, 0, 0);
-    const std::size_t pixels = image.image.size() / step;
-    for (std::size_t i = 0; i < pixels; ++i) {
-      for (std::size_t k = 0; k < 3; ++k) {
-        sum[int(k)] += double(LinearFromSrgb(float(image.image[i * step + k]) / 255.0f));
+  // Texture coordinates: floats, or whole numbers that stand for 0..1.
+  Result<std::vector<Eigen::Vector2f>> Uvs(int index) const {
+    if (index < 0 || std::size_t(index) >= gltf_.accessors.size()) {
+      return Bad("got an accessor out of range");
+    }
+    const tinygltf::Accessor& accessor = gltf_.accessors[std::size_t(index)];
+    std::size_t stride = 0;
+    const unsigned char* data = Data(accessor, stride);
+    if (data == nullptr || accessor.type != TINYGLTF_TYPE_VEC2) {
+      return Bad("got texture coordinates that do not lie in their buffer");
+    }
+    std::vector<Eigen::Vector2f> uvs(accessor.count);
+    for (std::size_t i = 0; i < accessor.count; ++i) {
+      const unsigned char* from = data + i * stride;
+      switch (accessor.componentType) {
+        case TINYGLTF_COMPONENT_TYPE_FLOAT:
+          std::memcpy(uvs[i].data(), from, 2 * sizeof(float));
+          break;
+        case TINYGLTF_COMPONENT_TYPE_UNSIGNED_BYTE:
+          uvs[i] = Eigen::Vector2f(float(from[0]), float(from[1])) / 255.0f;
+          break;
+        case TINYGLTF_COMPONENT_TYPE_UNSIGNED_SHORT:
+          uvs[i] = Eigen::Vector2f(float(from[0] + 256 * from[1]), float(from[2] + 256 * from[3])) /
+                   65535.0f;
+          break;
+        default:
+          return Bad("got texture coordinates that are neither floats nor whole numbers");
       }
     }
-    return (sum / double(std::max<std::size_t>(1, pixels))).cast<float>();
+    return uvs;
   }
 
-  void ReadMaterial(const tinygltf::Material& from, ModelPart& part) const {
-    const tinygltf::PbrMetallicRoughness& pbr = from.pbrMetallicRoughness;
-    Eigen::Vector3f base = MeanColour(pbr.baseColorTexture.index);
-    double alpha = 1;
-    if (pbr.baseColorFactor.size() == 4) {
-      for (int k = 0; k < 3; ++k) base[k] *= float(pbr.baseColorFactor[std::size_t(k)]);
-      alpha = pbr.baseColorFactor[3];
-    }
-    // Phong from metal and roughness: the reflected share of a dielectric is 0.04; the lobe is as
-    // wide as that of roughness squared (exponent 2 / a^2 - 2).
-    const float metal = std::clamp(float(pbr.metallicFactor), 0.0f, 1.0f);
-    const float a = std::clamp(float(pbr.roughnessFactor * pbr.roughnessFactor), 0.03f, 1.0f);
-    part.material.diffuse = base * (1 - metal) + base * (0.25f * metal);
-    part.material.specular =
-        Eigen::Vector3f::Constant(0.04f * (1 - metal)) + base * (0.75f * metal);
-    part.material.shininess = std::clamp(2 / (a * a) - 2, 1.0f, 1000.0f);
-    const auto transmission = from.extensions.find("KHR_materials_transmission");
-    if (transmission != from.extensions.end() && transmission->second.Has("transmissionFactor")) {
-      part.transparent = transmission->second.Get("transmissionFactor").GetNumberAsDouble() > 0.05;
-    }
-    part.transparent = part.transparent || (from.alphaMode == "BLEND" && alpha < 0.95);
-    part.name += part.name.empty() || from.name.empty() ? from.name : " " + from.name;
+  Status ReadMaterial(const tinygltf::Primitive& primitive, ModelPart& part) {
+    const GltfMaterial* material = materials_.Get(primitive.material);
+    if (material == nullptr) return {};
+    part.material = material->surface;
+    part.transparent = material->transparent;
+    part.name +=
+        part.name.empty() || material->name.empty() ? material->name : " " + material->name;
+    const auto uv = primitive.attributes.find("TEXCOORD_" + std::to_string(material->uv_set));
+    if (uv == primitive.attributes.end()) return {};
+    LG_ASSIGN(part.mesh.uvs, Uvs(uv->second));
+    const bool good = part.mesh.uvs.size() == part.mesh.positions.size() &&
+                      std::all_of(part.mesh.uvs.begin(), part.mesh.uvs.end(),
+                                  [](const Eigen::Vector2f& p) { return p.allFinite(); });
+    if (!good) part.mesh.uvs.clear();
+    return {};
   }
 
   const tinygltf::Model& gltf_;
   std::string name_;
+  GltfMaterials materials_;
   ModelFile model_;
 };
 

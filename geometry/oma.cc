@@ -9,15 +9,13 @@
 
 #include "base/units.h"
 #include "geometry/closed_curve.h"
-#include "geometry/parametric_frame.h"
 
 namespace lorgnette {
 namespace {
 
 constexpr std::size_t kLeastPoints = 8, kMostPoints = 20000;
 constexpr double kLeastRadius_mm = 5, kGreatestRadius_mm = 60;
-constexpr int kValuesPerLine = 10;
-constexpr int kTraceSplinePieces = 90;  // about 1.7 mm each: smooths what 0.01 mm steps leave
+constexpr std::size_t kValuesPerLine = 10;
 
 std::vector<std::string> Split(std::string_view text, char at) {
   std::vector<std::string> fields;
@@ -47,6 +45,18 @@ std::vector<Eigen::Vector2d> Mirror(const std::vector<Eigen::Vector2d>& contour)
   std::vector<Eigen::Vector2d> mirrored(contour.rbegin(), contour.rend());
   for (Eigen::Vector2d& p : mirrored) p.x() = -p.x();
   return mirrored;
+}
+
+// `label=1234;...` lines of ten whole hundredths each.
+void AppendHundredths(const char* label, const std::vector<double>& values,
+                      std::vector<std::string>& lines) {
+  for (std::size_t k = 0; k < values.size(); k += kValuesPerLine) {
+    std::string text = fmt::format("{}=", label);
+    for (std::size_t j = k; j < std::min(k + kValuesPerLine, values.size()); ++j) {
+      text += fmt::format("{}{:04d}", j == k ? "" : ";", std::lround(100 * values[j]));
+    }
+    lines.push_back(std::move(text));
+  }
 }
 
 const char* Side(Eye eye) { return eye == Eye::kRight ? "R" : "L"; }
@@ -221,93 +231,46 @@ Result<std::vector<double>> OmaFile::EdgeThickness(Eye eye) const {
   return std::vector<double>{};
 }
 
-void OmaFile::SetEdgeThickness(Eye eye, const std::vector<double>& thickness_mm) {
-  // The eye's old block, with the T lines that follow it, makes room.
+void OmaFile::SetBlock(const std::string& format, Eye eye, const std::vector<std::string>& labels,
+                       const std::vector<std::string>& lines) {
+  const std::string end = lines_.empty() || lines_[0].end.empty() ? "\r\n" : lines_[0].end;
+  std::size_t place = lines_.size();
   for (std::size_t i = 0; i < lines_.size(); ++i) {
-    if (LabelOf(lines_[i].text) != "STHKFMT") continue;
+    if (LabelOf(lines_[i].text) != format) continue;
     const std::vector<std::string> fields = Split(lines_[i].text, ';');
     if (fields.size() < 4 || fields[3] != Side(eye)) continue;
     std::size_t last = i + 1;
-    while (last < lines_.size() && LabelOf(lines_[last].text) == "T") ++last;
-    lines_.erase(lines_.begin() + long(i), lines_.begin() + long(last));
-    --i;
-  }
-  const std::string end = lines_.empty() || lines_[0].end.empty() ? "\r\n" : lines_[0].end;
-  if (!lines_.empty() && lines_.back().end.empty()) lines_.back().end = end;
-  lines_.push_back({fmt::format("STHKFMT=1;{};E;{}", thickness_mm.size(), Side(eye)), end});
-  for (std::size_t k = 0; k < thickness_mm.size(); k += kValuesPerLine) {
-    std::string text = "T=";
-    for (std::size_t j = k; j < std::min(k + kValuesPerLine, thickness_mm.size()); ++j) {
-      text += fmt::format("{}{:04d}", j == k ? "" : ";", std::lround(100 * thickness_mm[j]));
+    while (last < lines_.size() &&
+           std::find(labels.begin(), labels.end(), LabelOf(lines_[last].text)) != labels.end()) {
+      ++last;
     }
-    lines_.push_back({text, end});
+    lines_.erase(lines_.begin() + long(i), lines_.begin() + long(last));
+    place = i;
+    break;
   }
+  if (!lines_.empty() && lines_.back().end.empty()) lines_.back().end = end;
+  for (const std::string& line : lines) {
+    lines_.insert(lines_.begin() + long(place++), {line, end});
+  }
+}
+
+void OmaFile::SetEdgeThickness(Eye eye, const std::vector<double>& thickness_mm,
+                               const std::vector<double>& radii_mm) {
+  std::vector<std::string> lines = {
+      fmt::format("STHKFMT=1;{};E;{}", thickness_mm.size(), Side(eye))};
+  AppendHundredths("R", radii_mm, lines);
+  AppendHundredths("T", thickness_mm, lines);
+  SetBlock("STHKFMT", eye, {"R", "A", "T"}, lines);
+}
+
+void OmaFile::SetTrace(Eye eye, const std::vector<double>& radii_mm) {
+  std::vector<std::string> lines = {fmt::format("TRCFMT=1;{};E;{};F", radii_mm.size(), Side(eye))};
+  AppendHundredths("R", radii_mm, lines);
+  SetBlock("TRCFMT", eye, {"R", "A"}, lines);
 }
 
 double OmaCurveDiopters(double written) {
   return std::abs(written) > kOmaGreatestCurve ? 530 / written : written;
-}
-
-Result<FrameModel> FrameAroundTrace(const OmaFile& job, FrameParameters style) {
-  LG_ASSIGN(const std::vector<OmaTrace> traces, job.Traces());
-  if (traces.empty()) return Failure("trace: the file has no TRCFMT, want a frame trace");
-  // Both halves of our frames are alike: the left one's trace, or the right one's mirrored.
-  const OmaTrace* left = &traces[0];
-  for (const OmaTrace& trace : traces) {
-    if (trace.eye == Eye::kLeft) left = &trace;
-  }
-  const Boxing boxing = MeasureContour(left->contour_mm);
-  style.a_mm = boxing.a_mm;
-  style.b_mm = boxing.b_mm;
-  const int pieces = std::clamp(int(left->contour_mm.size()) / 4, 8, kTraceSplinePieces);
-  style.outline = FitClosedSpline(left->contour_mm, pieces).control();
-  const auto take = [&](const char* label, double low, double high, double& to) -> Status {
-    LG_ASSIGN(const OmaPair pair, job.Numbers(label));
-    const std::optional<double> value = pair.left ? pair.left : pair.right;
-    if (value && *value >= low && *value <= high) to = *value;
-    return {};
-  };
-  LG_RETURN_IF_ERROR(take("DBL", 8, 35, style.dbl_mm));
-  LG_RETURN_IF_ERROR(take("PANTO", 0, 25, style.pantoscopic_tilt_deg));
-  LG_RETURN_IF_ERROR(take("ZTILT", 0, 25, style.face_form_deg));
-  LG_RETURN_IF_ERROR(take("FCRV", 0.5, 9, style.frame_curve_diopters));
-  return BuildFrame(style);
-}
-
-void SetLensResults(OmaFile& job, const Eyewear& eyewear) {
-  constexpr int kAngles = 72;
-  const auto pair = [](double right, double left) {
-    return fmt::format("{:.2f};{:.2f}", right, left);
-  };
-  const auto right = EdgeThicknessByAngle(eyewear.right, eyewear.frame.right, kAngles);
-  const auto left = EdgeThicknessByAngle(eyewear.left, eyewear.frame.left, kAngles);
-  const LensDesign &r = eyewear.right.lens.design(), &l = eyewear.left.lens.design();
-  const Boxing rb = MeasureContour(eyewear.frame.right.contour_mm),
-               lb = MeasureContour(eyewear.frame.left.contour_mm);
-  job.Set("HBOX", pair(rb.a_mm, lb.a_mm));
-  job.Set("VBOX", pair(rb.b_mm, lb.b_mm));
-  job.Set("DBL", fmt::format("{:.2f}", eyewear.frame.boxing.dbl_mm));
-  job.Set("LIND", fmt::format("{:.3f};{:.3f}", r.lens.medium.index_d, l.lens.medium.index_d));
-  // A front of F1 at the lens' index has the curve F1 * 0.530 / (n - 1) at the tooling index.
-  const auto tooling = [](const LensDesign& d) {
-    return d.front_power.value() * 0.530 / (d.lens.medium.index_d - 1);
-  };
-  job.Set("TIND", "1.530");
-  job.Set("FRNT", pair(tooling(r), tooling(l)));
-  job.Set("CTHICK", pair(r.lens.center_thickness_mm, l.lens.center_thickness_mm));
-  const auto angle = [](std::vector<double>::const_iterator at, const std::vector<double>& of) {
-    return int(at - of.begin()) * 360 / kAngles;
-  };
-  const auto rmax = std::max_element(right.begin(), right.end());
-  const auto lmax = std::max_element(left.begin(), left.end());
-  const auto rmin = std::min_element(right.begin(), right.end());
-  const auto lmin = std::min_element(left.begin(), left.end());
-  job.Set("THKP", pair(*rmax, *lmax));
-  job.Set("THKA", fmt::format("{};{}", angle(rmax, right), angle(lmax, left)));
-  job.Set("THNP", pair(*rmin, *lmin));
-  job.Set("THNA", fmt::format("{};{}", angle(rmin, right), angle(lmin, left)));
-  job.SetEdgeThickness(Eye::kRight, right);
-  job.SetEdgeThickness(Eye::kLeft, left);
 }
 
 }  // namespace lorgnette

@@ -17,6 +17,7 @@
 #include "geometry/frame_model.h"
 #include "geometry/frame_parameters.h"
 #include "optics/design.h"
+#include "optics/prescription.h"
 
 namespace lorgnette {
 
@@ -38,6 +39,7 @@ class OmaFile {
   // Lines end with CR LF, LF or CR. Fails for a file without a single label, and for nothing else.
   static Result<OmaFile> Parse(std::string_view bytes, const std::string& name);
   std::string Text() const;
+  const std::string& name() const { return name_; }  // as given to Parse, for errors
 
   // First value of a label as written; nullopt when it is missing.
   std::optional<std::string> Get(const std::string& label) const;
@@ -50,9 +52,13 @@ class OmaFile {
   // stated, or a radius outside 5..60 mm fails, and the file's bytes stay as they are. With one
   // eye's trace only, the other is its mirror image.
   Result<std::vector<OmaTrace>> Traces() const;
+  // Replaces an eye's trace, or adds it: radii around the origin at equal angles, whole 0.01 mm.
+  void SetTrace(Eye eye, const std::vector<double>& radii_mm);
   // Edge thickness per angle (STHKFMT and its T lines), mm at equal steps from +x; empty: none.
   Result<std::vector<double>> EdgeThickness(Eye eye) const;
-  void SetEdgeThickness(Eye eye, const std::vector<double>& thickness_mm);
+  // With the radii at those angles, where given.
+  void SetEdgeThickness(Eye eye, const std::vector<double>& thickness_mm,
+                        const std::vector<double>& radii_mm = {});
 
  private:
   struct Line {
@@ -62,6 +68,9 @@ class OmaFile {
   // The label before '=', empty where there is none.
   static std::string LabelOf(const std::string& text);
   // Comma- or semicolon-separated integers of the lines with `label` that follow line `from`.
+  // Replaces an eye's `format` line and the lines of `labels` that follow it, or adds them.
+  void SetBlock(const std::string& format, Eye eye, const std::vector<std::string>& labels,
+                const std::vector<std::string>& lines);
   Result<std::vector<double>> Block(std::size_t from, const std::string& label,
                                     std::size_t count) const;
   std::string name_;
@@ -76,6 +85,21 @@ double OmaCurveDiopters(double written);
 // A frame in the style of `style`, its rims built around a job's traces: A, B and outline from the
 // trace, DBL, PANTO, ZTILT and FCRV from the job where it has them.
 Result<FrameModel> FrameAroundTrace(const OmaFile& job, FrameParameters style);
+
+// The job's order: SPH, CYL, AX, ADD, PRVM/PRVA (amount, and base in degrees of the eye as drawn: 0
+// at the viewer's right), IPD (one number: both eyes; two: each), BVD. A label that is missing
+// counts as 0 (PD 64, vertex distance 13). Fails without SPH, or for a value out of range.
+struct OmaOrder {
+  Prescription rx;
+  bool has_pd = false;
+  std::optional<double> index;                  // LIND
+  OmaPair center_thickness_mm, front_diopters;  // CTHICK; FRNT at 1.530 (OmaCurveDiopters)
+};
+Result<OmaOrder> ReadOmaOrder(const OmaFile& job);
+
+// A job of its own for eyewear that no file asked for: frame traces (400 equal angles), frame data
+// and prescription. SetLensResults adds the rest.
+OmaFile MakeOmaJob(const Eyewear& eyewear, const Prescription& rx);
 
 // Writes what the lenses turned out to be: LIND, FRNT, CTHICK, thickest and thinnest edge with
 // angles (THKP/THKA, THNP/THNA), HBOX, VBOX, DBL, and the thickness per angle.

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "geometry/parametric_frame.h"
 
+#include <utility>
+
 #include "geometry/frame_limbs.h"
 #include "geometry/rim_shape.h"
 
@@ -70,7 +72,14 @@ FrameModel BuildFrame(const FrameParameters& parameters, const FrameTessellation
   }
   model.ear_point_left = temple.ear_point;
   model.ear_point_right = MirroredX(temple.ear_point);
+  model.parameters = std::make_shared<const FrameParameters>(parameters);
   return model;
+}
+
+FrameParameters WithBridge(FrameParameters parameters, double dbl_mm, double pad_shift_mm) {
+  parameters.pads.half_gap_mm += (dbl_mm - parameters.dbl_mm) / 2 + pad_shift_mm;
+  parameters.dbl_mm = dbl_mm;
+  return parameters;
 }
 
 }  // namespace lorgnette

@@ -19,4 +19,8 @@ struct FrameTessellation {
 // Tested: boxing exact to 1e-3 mm of the polygon, mirror symmetry exact.
 FrameModel BuildFrame(const FrameParameters& parameters, const FrameTessellation& fineness = {});
 
+// The same frame with another bridge: DBL in mm, pads carried along with the rims, and their faces
+// then moved outward by pad_shift_mm (acetate: filed back; negative: built up).
+FrameParameters WithBridge(FrameParameters parameters, double dbl_mm, double pad_shift_mm);
+
 }  // namespace lorgnette

@@ -132,10 +132,77 @@ TEST(CutAndMount, OpticalCentreLiesWhereItWasAskedFor) {
   const Eigen::Vector3d in_opening =
       frame.left.frame_from_opening.inverse() * (cut->frame_from_lens * Eigen::Vector3d(0, 0, 0));
   EXPECT_NEAR((in_opening.head<2>() - centre).norm(), 0, 1e-12);
+}
+
+TEST(CutAndMount, ABevelFollowsTheRimWhereTheEdgeIsThickEnough) {
+  const FrameModel frame = *LoadFrame("aviator");
+  const Eigen::Vector2d centre(-3.5, 4);
+  const auto contour = ContourInLensFrame(frame.left.contour_mm, centre);
+  const CertifiedLens lens = Make(-4, 0, contour);
   // Decentring by 5.3 mm tilts the front against the rim: over a reach of 30 mm on a curve of
-  // 1/130 mm that is 5.3 / 130 * 30 = 1.2 mm, and the curves differ besides.
-  EXPECT_GT(cut->mount_misfit_mm, 0.1);
-  EXPECT_LT(cut->mount_misfit_mm, 2.0);
+  // 1/130 mm that is 5.3 / 130 * 30 = 1.2 mm, and the curves differ besides. A bevel at a fixed
+  // share of the edge leaves that; one that follows the groove does not.
+  CutOptions fixed;
+  fixed.bevel_position = 0.5;
+  const auto stiff = CutAndMount(lens, frame.left, centre, fixed);
+  ASSERT_TRUE(stiff.has_value());
+  EXPECT_GT(stiff->mount_misfit_mm, 0.1);
+  EXPECT_LT(stiff->mount_misfit_mm, 2.0);
+  const auto follows = CutAndMount(lens, frame.left, centre);
+  ASSERT_TRUE(follows.has_value());
+  EXPECT_LT(follows->mount_misfit_mm, stiff->mount_misfit_mm / 2);
+  // Where the misfit says so, the apex is that far from the groove, and nowhere farther; it never
+  // leaves the edge.
+  const Eigen::Isometry3d opening_from_lens =
+      frame.left.frame_from_opening.inverse() * follows->frame_from_lens;
+  double worst = 0;
+  const std::size_t n = follows->contour_mm.size();
+  for (std::size_t k = 0; k < n; ++k) {
+    const Eigen::Vector2d& p = follows->contour_mm[k];
+    const double front = FrontHit(lens.lens(), p)->point.z();
+    const double back = BackHit(lens.lens(), p)->point.z();
+    EXPECT_GT(follows->apex_z_mm[k], front);
+    EXPECT_LT(follows->apex_z_mm[k], back);
+    const Eigen::Vector3d apex =
+        opening_from_lens * Eigen::Vector3d(p.x(), p.y(), follows->apex_z_mm[k]);
+    worst = std::max(worst, std::abs(apex.z() - frame.left.groove_height_mm[n - 1 - k]));
+  }
+  EXPECT_NEAR(worst, follows->mount_misfit_mm, 1e-9);
+}
+
+TEST(CutAndMount, SaysWhereAThinEdgeCannotFollowTheRim) {
+  const FrameModel frame = *LoadFrame("aviator");
+  const Eigen::Vector2d centre(-3.5, 4);
+  const auto contour = ContourInLensFrame(frame.left.contour_mm, centre);
+  const auto cut = CutAndMount(Make(5, 0, contour), frame.left, centre);
+  ASSERT_TRUE(cut.has_value()) << cut.error().message;
+  ASSERT_GT(cut->mount_misfit_mm, kMisfitNote_mm);
+  ASSERT_EQ(cut->notes.size(), 1u);
+  EXPECT_THAT(cut->notes[0], testing::HasSubstr("off the groove at"));
+  EXPECT_THAT(cut->notes[0], testing::HasSubstr("more curved than the rim"));
+}
+
+TEST(CutAndMount, AGroovedEdgeIsAClosedMeshWithLessGlass) {
+  const FrameModel frame = *LoadFrame("rectangle");
+  const auto contour = ContourInLensFrame(frame.left.contour_mm, {0, 0});
+  const CertifiedLens lens = Make(-2, 0, contour);
+  CutOptions options;
+  options.edge = EdgeForm::kFlat;
+  const auto flat = CutAndMount(lens, frame.left, {0, 0}, options);
+  options.edge = EdgeForm::kGroove;
+  const auto grooved = CutAndMount(lens, frame.left, {0, 0}, options);
+  ASSERT_TRUE(flat.has_value() && grooved.has_value());
+  const MeshReport report = CheckMesh(grooved->mesh, true);
+  EXPECT_TRUE(report.closed());
+  EXPECT_EQ(report.self_intersections, 0);
+  // What is missing: the channel's section along the contour, shortened by half its depth all
+  // around (2 pi * depth / 2), where the edge has room for all of it.
+  const double channel = options.groove_width_mm * options.groove_depth_mm *
+                         (frame.left.contour_mm.empty()
+                              ? 0
+                              : Perimeter(frame.left.contour_mm) - kPi * options.groove_depth_mm);
+  const double less = CheckMesh(flat->mesh, false).volume_mm3 - report.volume_mm3;
+  EXPECT_NEAR(less / channel, 1, 0.05);  // the mesh has chords for arcs
 }
 
 TEST(CutAndMount, SaysWhatIsTooSmallOrTooThin) {

@@ -11,8 +11,11 @@
 #include "cmake/source_dir.h"
 #include "geometry/closed_curve.h"
 #include "geometry/contour.h"
+#include "geometry/cut_lens.h"
 #include "geometry/frame_axes.h"
 #include "geometry/frame_io.h"
+#include "optics/certify.h"
+#include "optics/design.h"
 
 namespace lorgnette {
 namespace {
@@ -74,6 +77,112 @@ TEST(ImportFrame, RefusesAModelWithoutRims) {
   const auto frame = ImportFrame(model, "block.stl");
   ASSERT_FALSE(frame.has_value());
   EXPECT_THAT(frame.error().message, testing::HasSubstr("block.stl: no closed rim"));
+}
+
+TEST(ImportFrame, FindsAFrameTurnedAnyWayInSpace) {
+  const FrameModel truth = *LoadFrame("rectangle");
+  const Eigen::Matrix3d turn(
+      Eigen::AngleAxisd(2.2, Eigen::Vector3d(0.4, -0.7, 0.5).normalized()).toRotationMatrix());
+  const auto frame = ImportFrame(AsModel(truth, 0.1 * turn), "turned.stl", 10.0);
+  ASSERT_TRUE(frame.has_value()) << frame.error().message;
+  EXPECT_THAT(frame->notes, testing::Contains(testing::HasSubstr("turned:")));
+  EXPECT_NEAR(frame->boxing.a_mm, truth.boxing.a_mm, 2 * kContourError_mm);
+  EXPECT_NEAR(frame->boxing.b_mm, truth.boxing.b_mm, 2 * kContourError_mm);
+  EXPECT_NEAR(frame->boxing.dbl_mm, truth.boxing.dbl_mm, 4 * kContourError_mm);
+  EXPECT_NEAR(frame->pantoscopic_tilt_deg, truth.pantoscopic_tilt_deg, 1.5);
+  EXPECT_LT(frame->ear_point_left.z(), -70);  // the temples lie behind
+  EXPECT_LT(frame->ear_point_left.y(), 0);    // and fall
+}
+
+// Our frame with flat-edged demo lenses cut to it, and without the rims' triangles that `drop`
+// names (frame coordinates of a corner).
+template <typename Drop>
+ModelFile WithLenses(const FrameModel& frame, const char* lens_name, const Drop& drop) {
+  ModelFile model;
+  for (const FramePart& part : frame.parts) {
+    ModelPart to{part.name, part.mesh, part.material, false};
+    if (part.name.find("rim") != std::string::npos) {
+      std::erase_if(to.mesh.triangles, [&](const Eigen::Vector3i& t) {
+        return drop(part.mesh.positions[std::size_t(t[0])]);
+      });
+    }
+    if (!to.mesh.empty()) model.parts.push_back(std::move(to));
+  }
+  for (const LensOpening* opening : {&frame.right, &frame.left}) {
+    LensOrder order;
+    order.contour_mm = ContourInLensFrame(opening->contour_mm, {0, 0});
+    order.medium.index_d = 1.5;
+    CutOptions options;
+    options.edge = EdgeForm::kFlat;
+    const auto cut = CutAndMount(*Certify(*DesignLens(order)), *opening, {0, 0}, options);
+    ModelPart lens;
+    lens.name = lens_name;
+    lens.mesh = cut->mesh;
+    for (Eigen::Vector3d& p : lens.mesh.positions) p = cut->frame_from_lens * p;
+    for (Eigen::Vector3d& n : lens.mesh.normals) n = cut->frame_from_lens.linear() * n;
+    model.parts.push_back(std::move(lens));
+  }
+  return model;
+}
+
+// The lens mesh has 360 points around its edge: chords of 0.4 mm on a corner of 8 mm radius leave
+// 0.003 mm, and the spline's own bound comes on top.
+constexpr double kLensOutlineError_mm = 2 * kContourError_mm;
+
+TEST(ImportFrame, TakesTheShapeOfAHalfRimFromItsDemoLenses) {
+  const FrameModel truth = *LoadFrame("rectangle");
+  const ModelFile model =
+      WithLenses(truth, "demo lens", [](const Eigen::Vector3d& p) { return p.y() < 6; });
+  const auto frame = ImportFrame(model, "nylon", 1.0);
+  ASSERT_TRUE(frame.has_value()) << frame.error().message;
+  EXPECT_EQ(frame->mount, FrameMount::kHalfRim);
+  EXPECT_NEAR(frame->boxing.a_mm, truth.boxing.a_mm, 2 * kLensOutlineError_mm);
+  EXPECT_NEAR(frame->boxing.b_mm, truth.boxing.b_mm, 2 * kLensOutlineError_mm);
+  EXPECT_NEAR(frame->boxing.dbl_mm, truth.boxing.dbl_mm, 4 * kLensOutlineError_mm);
+  for (const FramePart& part : frame->parts) {
+    EXPECT_THAT(part.name, testing::Not(testing::HasSubstr("demo")));
+  }
+  EXPECT_FALSE(frame->nose_contacts.empty());
+}
+
+TEST(ImportFrame, TakesTheShapeOfRimlessGlassesFromUnnamedLenses) {
+  const FrameModel truth = *LoadFrame("round");
+  const ModelFile model = WithLenses(truth, "object", [](const Eigen::Vector3d&) { return true; });
+  const auto frame = ImportFrame(model, "rimless", 1.0);
+  ASSERT_TRUE(frame.has_value()) << frame.error().message;
+  EXPECT_EQ(frame->mount, FrameMount::kRimless);
+  EXPECT_NEAR(frame->boxing.a_mm, truth.boxing.a_mm, 2 * kLensOutlineError_mm);
+  EXPECT_NEAR(frame->boxing.dbl_mm, truth.boxing.dbl_mm, 4 * kLensOutlineError_mm);
+}
+
+TEST(ImportFrame, RepairsADirtyFrameAndTellsWhatItDid) {
+  const FrameModel truth = *LoadFrame("panto");
+  ModelFile model = AsModel(truth, Eigen::Matrix3d::Identity());
+  for (ModelPart& part : model.parts) {
+    TriangleMesh& mesh = part.mesh;
+    for (std::size_t i = 0; i < mesh.triangles.size(); i += 9) {
+      std::swap(mesh.triangles[i][1], mesh.triangles[i][2]);
+    }
+    mesh.triangles.push_back(mesh.triangles[0]);
+    mesh.triangles.emplace_back(0, 0, 1);
+    if (mesh.triangles.size() > 5000) {  // a rim: a hole in its back
+      mesh.triangles.erase(mesh.triangles.begin() + 41);
+    }
+  }
+  const auto frame = ImportFrame(model, "dirty", 1.0);
+  ASSERT_TRUE(frame.has_value()) << frame.error().message;
+  EXPECT_THAT(frame->notes, testing::Contains(testing::HasSubstr("turned to face outward")));
+  EXPECT_THAT(frame->notes, testing::Contains(testing::HasSubstr("given twice dropped")));
+  EXPECT_THAT(frame->notes, testing::Contains(testing::HasSubstr("filled")));
+  EXPECT_NEAR(frame->boxing.a_mm, truth.boxing.a_mm, 2 * kContourError_mm);
+  EXPECT_NEAR(frame->boxing.b_mm, truth.boxing.b_mm, 2 * kContourError_mm);
+}
+
+TEST(ImportFrame, DoesNotBelieveAUnitThatMakesADollsFrame) {
+  const FrameModel truth = *LoadFrame("round");
+  const auto tiny = ImportFrame(AsModel(truth, 0.4 * Eigen::Matrix3d::Identity()), "doll", 1.0);
+  ASSERT_TRUE(tiny.has_value()) << tiny.error().message;
+  EXPECT_THAT(tiny->notes, testing::Contains(testing::HasSubstr("not believed")));
 }
 
 TEST(MirrorShare, IsWholeAcrossTheMiddleOfASymmetricMesh) {

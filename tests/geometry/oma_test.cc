@@ -6,11 +6,13 @@
 
 #include <cmath>
 #include <filesystem>
+#include <iostream>
 
 #include "base/atomic_file.h"
 #include "base/units.h"
 #include "cmake/source_dir.h"
 #include "geometry/closed_curve.h"
+#include "geometry/cut_lens.h"
 #include "geometry/frame_io.h"
 
 namespace lorgnette {
@@ -90,8 +92,60 @@ TEST(OmaFile, EdgeThicknessComesBackToAHundredth) {
   const auto back = file.EdgeThickness(Eye::kRight);
   ASSERT_TRUE(back.has_value());
   EXPECT_THAT(*back, testing::Pointwise(testing::DoubleNear(0.005), thickness));
-  EXPECT_THAT(file.Text(), testing::HasSubstr("A=1\nB=2\nSTHKFMT"));
+  EXPECT_THAT(file.Text(), testing::StartsWith("A=1\nSTHKFMT=1;72;E;R\nT="));
+  EXPECT_THAT(file.Text(), testing::EndsWith("\nB=2\n"));
   EXPECT_TRUE(file.EdgeThickness(Eye::kLeft)->empty());
+}
+
+TEST(OmaFile, TraceComesBackToAHundredthAndTakesTheOldOnesPlace) {
+  OmaFile file = *OmaFile::Parse(RoundTrace(360, "R"), "t.oma");
+  std::vector<double> radii;
+  for (int k = 0; k < 400; ++k) radii.push_back(20 + 3 * std::cos(2 * kPi * k / 400));
+  file.SetTrace(Eye::kRight, radii);
+  const auto traces = file.Traces();
+  ASSERT_TRUE(traces.has_value()) << traces.error().message;
+  ASSERT_EQ(traces->at(0).contour_mm.size(), 400u);
+  for (int k = 0; k < 400; ++k) {
+    EXPECT_NEAR(traces->at(0).contour_mm[std::size_t(k)].norm(), radii[std::size_t(k)],
+                0.005 + 1e-9);
+  }
+  EXPECT_THAT(file.Text(), testing::StartsWith("JOB=7\r\nDBL=18.00\r\n_X=keep;me\r\nTRCFMT=1;400"));
+}
+
+TEST(ReadOmaOrder, ReadsPowersPrismPupilsAndLens) {
+  const OmaFile job = *OmaFile::Parse(
+      "SPH=-0.50;0.50\nCYL=-1.25;-3.00\nAX=140;15\nADD=1.25;1.25\nPRVM=2;1\nPRVA=0;90\n"
+      "IPD=31.00;30.50\nLIND=1.498\nFRNT=85.68;5.46\nCTHICK=2.01;2.05\n",
+      "t.oma");
+  const auto order = ReadOmaOrder(job);
+  ASSERT_TRUE(order.has_value()) << order.error().message;
+  EXPECT_EQ(order->rx.right.sphere.value(), -0.5);
+  EXPECT_EQ(order->rx.left.cylinder.value(), -3);
+  EXPECT_EQ(order->rx.left.axis.value(), 15);
+  EXPECT_EQ(order->rx.right.add.value(), 1.25);
+  EXPECT_NEAR(order->rx.right.prism_in.value(), 2, 1e-12);  // 0 degrees: nasal on the right
+  EXPECT_NEAR(order->rx.left.prism_up.value(), 1, 1e-12);
+  EXPECT_NEAR(order->rx.left.prism_in.value(), 0, 1e-12);
+  EXPECT_TRUE(order->has_pd);
+  EXPECT_EQ(order->rx.pd_left_mm, 30.5);
+  EXPECT_EQ(order->index, 1.498);
+  EXPECT_NEAR(*order->front_diopters.right, 530 / 85.68, 1e-12);
+  EXPECT_EQ(order->front_diopters.left, 5.46);
+  EXPECT_EQ(order->center_thickness_mm.left, 2.05);
+  EXPECT_THAT(ReadOmaOrder(*OmaFile::Parse("CYL=1\n", "t.oma")).error().message,
+              testing::HasSubstr("t.oma:SPH"));
+  EXPECT_THAT(ReadOmaOrder(*OmaFile::Parse("SPH=99\n", "t.oma")).error().message,
+              testing::HasSubstr("want -40..40"));
+}
+
+TEST(LoadFrame, BuildsAFrameAroundALabTraceOnTheCommandLine) {
+  const std::string path = testing::TempDir() + "/lorgnette_trace.oma";
+  ASSERT_TRUE(WriteFileAtomically(path, RoundTrace(400, "R")));
+  const auto frame = LoadFrame(path);
+  ASSERT_TRUE(frame.has_value()) << frame.error().message;
+  EXPECT_NEAR(frame->boxing.a_mm, 46, kTraceStep_mm);
+  EXPECT_THAT(frame->notes, testing::Contains(testing::HasSubstr("built around the trace")));
+  EXPECT_FALSE(frame->nose_contacts.empty());
 }
 
 TEST(OmaCurveDiopters, TakesALargeNumberForARadius) {
@@ -143,6 +197,62 @@ TEST(OmaFile, RealTracesAgreeWithTheirOwnBoxingAndCircumference) {
   ASSERT_TRUE(packed.has_value());
   EXPECT_FALSE(packed->Traces().has_value());
   EXPECT_EQ(packed->Text(), *ReadFile(folder + "TRCFMT6.oma"));
+}
+
+// A real progressive lens: designed from its own job (powers, addition, index, front radius, centre
+// thickness, where the optical centre lies: FCOCIN inward and FCOCUP up from the boxing centre),
+// cut to its own trace. The job's T are its thickness less the pin bevel on both sides and the
+// finishing allowance (2 PINB + FINCMP): so they differ from the thickest and thinnest edge that
+// the same file states (_THKP 4.36 at 325 degrees, T 3.65; _THNP 2.42 at 160, T 1.73).
+TEST(OmaFile, ThicknessOfARealLensAgreesWithItsLabsWithinThreeTenths) {
+  const std::string path = LORGNETTE_SOURCE_DIR "/../shared/data/oma/STHKFMT.oma";
+  if (!std::filesystem::exists(path)) GTEST_SKIP() << "no " << path;
+  const OmaFile job = *OmaFile::Parse(*ReadFile(path), "STHKFMT.oma");
+  const auto order = ReadOmaOrder(job);
+  ASSERT_TRUE(order.has_value()) << order.error().message;
+  const auto traces = job.Traces();
+  ASSERT_TRUE(traces.has_value());
+  const auto number = [&](const char* label, Eye eye) {
+    const OmaPair pair = *job.Numbers(label);
+    return eye == Eye::kRight ? *pair.right : *pair.left;
+  };
+  constexpr double kAsked_mm = 0.3;
+  double worst = 0;
+  for (const OmaTrace& trace : *traces) {
+    const bool right = trace.eye == Eye::kRight;
+    LensOpening opening;
+    opening.contour_mm = trace.contour_mm;
+    const Eigen::Vector2d centre((right ? 1 : -1) * number("FCOCIN", trace.eye),
+                                 number("FCOCUP", trace.eye));
+    LensOrder lens;
+    lens.eye = trace.eye;
+    lens.rx = right ? order->rx.right : order->rx.left;
+    lens.medium.index_d = *order->index;
+    const double tooling = right ? *order->front_diopters.right : *order->front_diopters.left;
+    lens.base_curve = Diopters(tooling * (*order->index - 1) / 0.530);
+    lens.center_thickness_mm = number("CTHICK", trace.eye);
+    lens.progressive = ProgressiveOrder{};
+    lens.contour_mm = ContourInLensFrame(opening.contour_mm, centre);
+    const auto design = DesignLens(lens);
+    ASSERT_TRUE(design.has_value()) << design.error().message;
+    const auto certified = Certify(*design);
+    ASSERT_TRUE(certified.has_value()) << certified.error().message;
+    CutOptions cutting;
+    cutting.edge = EdgeForm::kFlat;
+    const auto cut = CutAndMount(*certified, opening, centre, cutting);
+    ASSERT_TRUE(cut.has_value()) << cut.error().message;
+    const auto stated = job.EdgeThickness(trace.eye);
+    ASSERT_TRUE(stated.has_value()) << stated.error().message;
+    ASSERT_EQ(stated->size(), 72u);
+    const double allowance = 2 * number("PINB", trace.eye) + number("FINCMP", trace.eye);
+    const auto thickness = EdgeThicknessByAngle(*cut, opening, 72);
+    for (std::size_t k = 0; k < 72; ++k) {
+      worst = std::max(worst, std::abs(thickness[k] - allowance - (*stated)[k]));
+    }
+  }
+  EXPECT_LT(worst, kAsked_mm);
+  RecordProperty("worst_um", int(1000 * worst));
+  std::cout << "worst difference of edge thickness: " << worst << " mm\n";
 }
 
 }  // namespace

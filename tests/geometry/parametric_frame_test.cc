@@ -102,6 +102,21 @@ TEST(ShippedFrames, RightIsTheMirrorImageOfLeft) {
   }
 }
 
+TEST(WithBridge, ChangesTheBridgeAndCarriesThePadsAlong) {
+  const FrameParameters made = *LoadFrame("rectangle")->parameters;
+  const FrameModel wider = BuildFrame(WithBridge(made, made.dbl_mm + 2, 0.5));
+  const FrameModel frame = BuildFrame(made);
+  EXPECT_EQ(wider.boxing.dbl_mm, frame.boxing.dbl_mm + 2);
+  EXPECT_NEAR(wider.boxing.a_mm, frame.boxing.a_mm, 1e-12);
+  ASSERT_EQ(wider.nose_contacts.size(), frame.nose_contacts.size());
+  const auto nearest = [](const FrameModel& f) {
+    double x = 1e9;
+    for (const Eigen::Vector3d& p : f.nose_contacts) x = std::min(x, std::abs(p.x()));
+    return x;
+  };
+  EXPECT_NEAR(nearest(wider), nearest(frame) + 1.5, 0.2);  // half the change, and half a millimetre
+}
+
 TEST(LoadFrame, NamesWhatShipsWhenAskedForSomethingElse) {
   const auto frame = LoadFrame("monocle");
   ASSERT_FALSE(frame.has_value());
