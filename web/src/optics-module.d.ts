@@ -17,6 +17,7 @@ declare module "*/wasm/optics.mjs" {
       add: number,
       corridor: number,
       index: number,
+      soft: number,
       half: number,
       n: number,
     ): number;
@@ -32,6 +33,9 @@ declare module "*/wasm/optics.mjs" {
     ): number;
     _lg_view(slot: number, view: number, width: number, height: number): number;
     _lg_rings(): number;
+    _lg_mirrored(): number;
+    _lg_worn(slot: number): number;
+    _lg_focimeter(slot: number, x: number, y: number, turned: number): number;
     UTF8ToString(pointer: number): string;
     stringToUTF8(text: string, pointer: number, bytes: number): void;
     lengthBytesUTF8(text: string): number;

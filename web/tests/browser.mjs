@@ -11,15 +11,28 @@ export const missing = existsSync(EXECUTABLE) ? false : `${EXECUTABLE} is not in
 export const launch = () =>
   chromium.launch({
     executablePath: EXECUTABLE,
+    timeout: HANG_MS,
     args: ["--headless", "--no-sandbox", "--disable-gpu", "--disable-quic", "--no-first-run",
       "--disable-background-networking", "--disable-component-update", "--disable-sync"],
   });
+
+// A machine busy with other work is slow, not wrong: nothing here waits for a clock but a hang's.
+const HANG_MS = 600_000;
 
 // A page that is ready; `problems` collects errors and requests to anywhere but `url`.
 export async function openPage(browser, url, options = {}) {
   const context = await browser.newContext({
     viewport: { width: 1280, height: 900 },
     ...options.context,
+  });
+  context.setDefaultTimeout(HANG_MS);
+  // The same unknown lenses every time (Park and Miller's generator).
+  await context.addInitScript(() => {
+    let state = 20170918;
+    Math.random = () => {
+      state = (state * 48271) % 2147483647;
+      return state / 2147483647;
+    };
   });
   const page = await context.newPage();
   const problems = [];
@@ -33,7 +46,7 @@ export async function openPage(browser, url, options = {}) {
       problems.push(`request to ${to}`);
     }
   });
-  await page.goto(url + (options.hash ?? ""));
+  await page.goto(url + (options.hash ?? ""), { timeout: HANG_MS });
   await page.waitForSelector("html[data-ready]");
   return { page, problems, close: () => context.close() };
 }

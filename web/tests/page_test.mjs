@@ -17,7 +17,7 @@ const MAX_COMPRESSED_BYTES = 1.5e6;
 const skip = missing || (existsSync(join(dist, "index.html")) ? false : "web/dist is not built");
 const shots = process.env.SHOTS; // a folder for pictures to look at
 
-const TABS = ["overview", "rays", "maps", "why", "lessons", "practice", "solid"];
+const TABS = ["overview", "rays", "maps", "why", "lessons", "practice", "solid", "cost"];
 const sphere = (page) => page.getByRole("spinbutton", { name: "Right eye, Sphere in dioptres" });
 const number = (page, key) => page.locator(`[data-number="${key}"]`).innerText();
 
@@ -87,24 +87,33 @@ describe("the page", { skip }, () => {
     assert.equal(
       await page.getByRole("spinbutton", { name: "Right eye, Axis in degrees" }).inputValue(), "170");
     assert.match(await page.locator(".eye-right .transposed").innerText(), /−4\.75 \+0\.75 × 80/);
+    // By pointer: a quarter of the way over the protractor from the right end is 45 degrees.
+    const dial = await page.locator(".eye-right .dial svg").boundingBox();
+    await page.mouse.click(
+      dial.x + (dial.width * (62 + 28)) / 124, dial.y + (dial.height * (54 - 28)) / 62);
+    assert.equal(
+      await page.getByRole("spinbutton", { name: "Right eye, Axis in degrees" }).inputValue(), "45");
     await close();
   });
 
   test("one slider step updates every figure of the overview", async () => {
     const { page, close } = await open();
-    const ms = await page.evaluate(async () => {
+    const figures = () => page.evaluate(() => ({
+      numbers: document.querySelector(".numbers").innerText,
+      iris: document.querySelector(".iris").innerText,
+      section: document.querySelector(".section-drawing").innerHTML,
+      outline: document.querySelector(".outline-drawing").innerHTML,
+      face: document.querySelector("canvas.face").toDataURL(),
+      transposed: document.querySelector(".eye-right .transposed").innerText,
+    }));
+    const before = await figures();
+    const after = await page.evaluate(() => {
       const slider = document.querySelector('.eye-right input[type="range"]');
-      const spent = [];
-      for (let i = 0; i < 12; ++i) {
-        slider.value = String(-4 - i / 4);
-        const start = performance.now();
-        slider.dispatchEvent(new Event("input", { bubbles: true }));
-        spent.push(performance.now() - start);
-        await new Promise((done) => requestAnimationFrame(done));
-      }
-      return spent.sort((a, b) => a - b)[6];
-    });
-    console.log(`a slider step: ${ms.toFixed(1)} ms (median of 12)`);
+      slider.value = "-6.75";
+      slider.dispatchEvent(new Event("input", { bubbles: true }));
+      return true; // without a wait: all of it happens within the event
+    }).then(figures);
+    for (const [name, value] of Object.entries(after)) assert.notEqual(value, before[name], name);
     assert.equal(await number(page, "backVertex-right"), "−6.75 / −7.50");
     await close();
   });
@@ -139,9 +148,12 @@ describe("the page", { skip }, () => {
     const alert = page.getByRole("alert");
     assert.match(await alert.innerText(), /Right eye: this lens cannot be made/);
     assert.match(await alert.innerText(), /possible/);
+    assert.equal(await sphere(page).getAttribute("aria-invalid"), "true");
+    assert.match(await page.locator(".eye-right").innerText(), /Cannot be made/);
     assert.equal(await number(page, "backVertex-right"), "−4.25 / −5.00");
     await sphere(page).fill("-3");
     assert.equal(await alert.isVisible(), false);
+    assert.equal(await sphere(page).getAttribute("aria-invalid"), "false");
     assert.equal(await number(page, "backVertex-right"), "−3.00 / −3.75");
     await close();
   });
@@ -281,6 +293,27 @@ describe("the page", { skip }, () => {
     await close();
   });
 
+  test("the lessons' lenses show what their texts say of them", async () => {
+    const { page, close } = await open({ hash: "#tab=lessons" });
+    const load = async (id) => {
+      await page.locator("#tab-lessons").click();
+      await page.locator(`#lesson-${id}`).evaluate((one) => { one.open = true; });
+      await page.locator(`#lesson-${id}`).getByRole("button", { name: "Load this lens" }).click();
+    };
+    await load("edge");
+    assert.equal(await number(page, "edge-right"), "6.31 … 6.31");
+    await load("vertex");
+    assert.match(await page.locator("#why-worn").innerText(), /−12\.6050/);
+    await load("tilt");
+    assert.match(await page.locator("#why-worn").innerText(), /\+6\.1[34]\d\d \+0\.44\d\d × 180/);
+    await load("minkwitz");
+    assert.match(await page.locator(".map-main .hint").innerText(), /Progressive front/);
+    assert.ok(await page.getByText("Halfway down the corridor").isVisible());
+    await load("imbalance");
+    assert.equal(await page.locator(".maps select").inputValue(), "prism");
+    await close();
+  });
+
   test("every lesson can be answered right", async () => {
     const { page, close } = await open({ hash: "#tab=lessons" });
     await page.locator(".lesson").evaluateAll((all) => all.forEach((one) => { one.open = true; }));
@@ -292,7 +325,7 @@ describe("the page", { skip }, () => {
       assert.match(await fieldset.innerText(), /Right\./);
     }
     const answers = ["0.5", "80", "-12.61", "-5.60", "3", "4", "7.52", "2.18", "2", "-4.25", "0.286",
-      "1.43", "6.13", "0.44", "8.28", "6.0"];
+      "1.43", "6.13", "0.44", "8.28", "6.0", "2.4", "4", "0.6", "89.9"];
     const forms = await page.locator("form.question").all();
     assert.equal(forms.length, answers.length);
     for (const [i, form] of forms.entries()) {
@@ -305,37 +338,85 @@ describe("the page", { skip }, () => {
     await close();
   });
 
-  test("the focimeter's lens can be read from its lines alone", async () => {
-    const { page, close } = await open({ hash: "#tab=practice" });
-    const read = await page.evaluate(() => {
-      const [drum, wheel] = document.querySelectorAll(".practice .wheel input");
-      const set = (input, value) => {
-        input.value = String(value);
-        input.dispatchEvent(new Event("input"));
-      };
-      const blur = () => [...document.querySelectorAll(".scope feGaussianBlur")]
-        .map((b) => Number(b.getAttribute("stdDeviation")));
-      const sharp = [];
-      for (let axis = 5; axis <= 180; axis += 5) {
-        set(wheel, axis);
-        for (let power = -12; power <= 12; power += 0.125) {
-          set(drum, power);
-          if (blur()[0] < 0.01) sharp.push({ axis, power });
-        }
+  // Turns drum and wheel until lines are sharpest, as a reader would, and returns the powers.
+  const readFocimeter = (page) => page.evaluate(() => {
+    const [drum, wheel] = document.querySelectorAll(".practice .wheel input");
+    const set = (input, value) => {
+      input.value = String(value);
+      input.dispatchEvent(new Event("input"));
+    };
+    const narrow = () => Number(
+      document.querySelector(".practice .scope feGaussianBlur").getAttribute("stdDeviation"));
+    const sharp = [];
+    for (let axis = 5; axis <= 180; axis += 5) {
+      set(wheel, axis);
+      for (let power = -12; power <= 12; power += 0.125) {
+        set(drum, power);
+        if (narrow() < 0.35) sharp.push({ axis, power, blur: narrow() });
       }
-      return sharp;
-    });
-    // A line is sharp in the meridian across it: along the axis lie lines of sphere + cylinder.
-    const high = read.reduce((a, b) => (b.power > a.power ? b : a));
-    const low = read.reduce((a, b) => (b.power < a.power ? b : a));
-    const form = page.locator(".practice form");
-    await form.getByRole("spinbutton", { name: "Sphere" }).fill(String(high.power));
-    await form.getByRole("spinbutton", { name: "Cylinder" }).fill(String(low.power - high.power));
-    if (low.power !== high.power) {
-      await form.getByRole("spinbutton", { name: "Axis" }).fill(String(low.axis));
     }
-    await form.getByRole("button", { name: "Check" }).click();
-    assert.match(await page.locator(".practice > .bench").innerText(), /Right:/);
+    const best = (list) => list.reduce((a, b) => (b.blur < a.blur ? b : a));
+    const powers = sharp.map((r) => r.power);
+    const [low, high] = [Math.min(...powers), Math.max(...powers)];
+    const middle = (low + high) / 2;
+    // A line is sharp in the meridian across it: along the axis lie lines of sphere + cylinder.
+    const strong = best(sharp.filter((r) => r.power <= middle));
+    const weak = best(sharp.filter((r) => r.power >= middle));
+    return { weak: weak.power, strong: strong.power, axis: strong.axis };
+  });
+  const quarter = (power) => Math.round(4 * power) / 4; // as lenses are made
+  const centre = async (page) => {
+    for (const name of ["Stop, sideways", "Stop, up"]) {
+      await page.getByRole("slider", { name }).fill("0");
+    }
+  };
+  const answer = (page, name, value) =>
+    page.locator(".practice form").getByRole("spinbutton", { name }).fill(String(value));
+
+  for (const kind of ["sphere", "cylinder", "prism", "bifocal"]) {
+    test(`the focimeter's unknown lens can be read from what it shows: ${kind}`, async () => {
+      const { page, close } = await open({ hash: "#tab=practice" });
+      await page.getByLabel("Unknown").selectOption(kind);
+      if (kind !== "prism") await centre(page);
+      const read = await readFocimeter(page);
+      const sphere = quarter(read.weak);
+      const cylinder = quarter(read.strong) - sphere;
+      await answer(page, "Sphere", sphere);
+      if (kind !== "sphere" && cylinder !== 0) {
+        await answer(page, "Cylinder", cylinder);
+        await answer(page, "Axis", read.axis);
+      }
+      if (kind === "prism") {
+        const [, x, y] = (await page.locator(".practice .scope > g > g").last()
+          .getAttribute("transform")).match(/translate\(([-\d.]+) ([-\d.]+)/);
+        // Ten units of the scope a prism dioptre; the nose of a right lens is at the right.
+        await answer(page, "Horizontal prism", Number(x) / 10);
+        await answer(page, "Vertical prism", -Number(y) / 10);
+      }
+      if (kind === "bifocal") {
+        await page.getByLabel("Lens turned round").check();
+        const far = await readFocimeter(page);
+        await page.getByRole("button", { name: "Go to the segment" }).click();
+        const near = await readFocimeter(page);
+        await answer(page, "Near addition", quarter(near.weak - far.weak));
+      }
+      await page.locator(".practice form").getByRole("button", { name: "Check" }).click();
+      const told = await page.locator(".practice .verdict-line").innerText();
+      await page.getByRole("button", { name: "Show the lens" }).click();
+      const lens = await page.locator(".practice .verdict-line").innerText();
+      assert.match(told, /Right:/, `${JSON.stringify(read)}: ${lens}`);
+      await close();
+    });
+  }
+
+  test("off its centre a lens moves the focimeter's target, as arrow keys move the stop", async () => {
+    const { page, close } = await open({ hash: "#tab=practice" });
+    await centre(page);
+    const place = () => page.locator(".practice .scope > g > g").last().getAttribute("transform");
+    assert.match(await place(), /translate\(-?0\.00 -?0\.00\)/);
+    await page.getByRole("slider", { name: "Stop, up" }).focus();
+    for (let k = 0; k < 8; ++k) await page.keyboard.press("ArrowRight");
+    assert.doesNotMatch(await place(), /translate\(-?0\.00 -?0\.00\)/);
     await close();
   });
 
@@ -346,6 +427,226 @@ describe("the page", { skip }, () => {
     assert.match(await entry.innerText(), /−4\.250000 D/);
     assert.match(await entry.innerText(), /Equation \(1\)/);
     await close();
+  });
+
+  test("a lens that leans shows what the eye meets, and is made for it when asked", async () => {
+    const { page, problems, close } = await open();
+    assert.equal(await page.locator('[data-number="worn-right"]').isVisible(), false);
+    await page.getByLabel("Tilt").fill("12");
+    await page.getByLabel("Face form").fill("6");
+    const worn = await number(page, "worn-right");
+    assert.match(worn, /^−4\.\d\d −0\.\d\d × 1\d\d/);
+    assert.notEqual(worn, "−4.25 −0.75 × 160");
+    assert.equal(await number(page, "backVertex-right"), "−4.25 / −5.00");
+    await page.getByLabel("Make the lens for this position").check();
+    assert.equal(await number(page, "worn-right"), "−4.25 −0.75 × 160");
+    assert.notEqual(await number(page, "made-right"), "−4.25 −0.75 × 160");
+    await page.getByRole("button", { name: "As worn" }).click();
+    assert.match(await page.locator("#why-worn").innerText(), /V049/);
+    // The other views take the position too.
+    for (const tab of ["rays", "maps", "solid"]) await page.locator(`#tab-${tab}`).click();
+    assert.deepEqual(problems, []);
+    await close();
+  });
+
+  test("reflections, rings and coats change the picture, each by itself", async () => {
+    const { page, close } = await open({ hash: "#l=-9_0__0_0_0_32&r=-9_0__0_0_0_32" });
+    const face = () => page.evaluate(() => document.querySelector("canvas.face").toDataURL());
+    const seen = new Set([await face()]);
+    for (const name of ["Reflections", "Edge rings", "Hide frame", "Without lenses"]) {
+      const box = page.getByLabel(name);
+      await box.check();
+      seen.add(await face());
+      await box.uncheck();
+    }
+    await page.getByLabel("Reflections").check();
+    await page.getByLabel("Coating, both surfaces").selectOption("broadband");
+    seen.add(await face());
+    assert.equal(seen.size, 6);
+    await close();
+  });
+
+  test("one's own photograph comes behind the lenses, its pupils moved by the keyboard", async () => {
+    const { page, problems, close } = await open();
+    const face = () => page.evaluate(() => document.querySelector("canvas.face").toDataURL());
+    const drawn = await face();
+    const png = await page.evaluate(() => {
+      const canvas = document.createElement("canvas");
+      canvas.width = 400;
+      canvas.height = 300;
+      const context = canvas.getContext("2d");
+      for (let k = 0; k < 400; k += 20) {
+        context.fillStyle = k % 40 ? "#c84" : "#48c";
+        context.fillRect(k, 0, 20, 300);
+      }
+      return canvas.toDataURL("image/png").split(",")[1];
+    });
+    const choose = (name, buffer) => page.locator('.photo input[type="file"]')
+      .setInputFiles({ name, mimeType: "image/png", buffer });
+    await choose("me.png", Buffer.from(png, "base64"));
+    const handle = page.getByRole("button", { name: "Pupil of the right eye" });
+    await handle.waitFor();
+    const photo = await face();
+    assert.notEqual(photo, drawn);
+    await handle.focus();
+    await page.keyboard.press("Shift+ArrowLeft");
+    assert.notEqual(await face(), photo);
+    await choose("no.png", Buffer.from("no picture"));
+    await page.getByText("Want an image file").waitFor();
+    await page.getByRole("button", { name: "Back to the drawn face" }).click();
+    assert.equal(await face(), drawn);
+    assert.deepEqual(problems, []);
+    await close();
+  });
+
+  test("a map tells the value under the pointer and under the arrow keys", async () => {
+    const { page, close } = await open({ hash: "#tab=maps" });
+    const map = page.locator(".map-drawing");
+    const told = () => page.locator(".maps .told").innerText();
+    await map.focus();
+    await page.keyboard.press("Home");
+    assert.match(await told(), /At 0\.0, .*: 0\.0\d D/);
+    for (let k = 0; k < 12; ++k) await page.keyboard.press("ArrowRight");
+    assert.match(await told(), /At \+\d+\.\d, .*: 0\.\d\d D/);
+    await map.hover({ position: { x: 60, y: 60 } });
+    await map.hover();
+    assert.match(await told(), /At /);
+    await close();
+  });
+
+  test("the soft progressive is a lens of the order and a surface of its own", async () => {
+    const { page, problems, close } = await open({ hash: "#tab=maps&r=1_0__2_0_0_32&l=1_0__2_0_0_32" });
+    const show = async (design, what) => {
+      await page.getByLabel("Design").selectOption(design);
+      await page.getByLabel("Show", { exact: true }).selectOption(what);
+      const text = await page.locator(".map-main .hint").innerText();
+      return Number(text.match(/to \+?([\d.]+)/)[1]);
+    };
+    assert.ok(await show("soft", "progAstigmatism") < 0.8 * await show("progressive", "progAstigmatism"));
+    assert.notEqual(await show("soft", "astigmatism"), await show("progressive", "astigmatism"));
+    assert.deepEqual(problems, []);
+    await close();
+  });
+
+  test("what accuracy costs: every point by arrow keys, and the fastest within an error", {
+    skip: existsSync(fileURLToPath(new URL("../../data/cost.json", import.meta.url)))
+      ? false : "data/cost.json is not there",
+  }, async () => {
+    const { page, problems, close } = await open({ hash: "#tab=cost" });
+    const plot = page.locator(".cost-plot");
+    await plot.waitFor();
+    const told = () => page.locator(".cost .told").last().innerText();
+    const rows = page.locator(".cost-table tbody tr");
+    const points = await rows.count();
+    assert.equal(await page.locator(".cost-plot .point").count(), points);
+    await plot.focus();
+    await page.keyboard.press("Home");
+    const seen = new Set([await told()]);
+    for (let k = 1; k < points; ++k) {
+      await page.keyboard.press("ArrowRight");
+      seen.add(await told());
+    }
+    assert.equal(seen.size, points);
+    const advice = () => page.locator(".cost .told").first().innerText();
+    const strict = page.getByRole("slider", { name: "Error that you can bear" });
+    await strict.fill("0");
+    const best = await advice();
+    await strict.fill("100");
+    assert.notEqual(await advice(), best);
+    const studies = page.getByLabel("Study");
+    for (const option of await studies.locator("option").all()) {
+      await studies.selectOption(await option.getAttribute("value"));
+      assert.ok((await rows.count()) > 0);
+    }
+    assert.deepEqual(problems, []);
+    await close();
+  });
+
+  test("a link carries every field of the order", async () => {
+    const hash = "#r=2.25_-1.5_35_1.25_1_-0.5_31.5&l=-3_0.75_120_2_-1_0.5_33&m=1.67&f=oval&d=soft" +
+      "&c=v&base=5&centre=6&minCentre=1.8&minEdge=1.2&a=52&b=38&dbl=17&vertex=12.5&refraction=14" +
+      "&panto=9&wrap=5&camera=700&tint=20&corridor=16&compensate=1";
+    const { page, close } = await open({ hash });
+    await page.getByRole("button", { name: "Copy link" }).click();
+    const fields = (text) => Object.fromEntries(new URLSearchParams(text.replace(/^#/, "")));
+    assert.deepEqual(fields(new URL(page.url()).hash), fields(hash));
+    await close();
+  });
+
+  test("the whole page can be reached and used by the Tab key, with focus in sight", async () => {
+    const { page, problems, close } = await open();
+    for (const tab of TABS) {
+      await page.locator(`#tab-${tab}`).dispatchEvent("click");
+      await page.evaluate(() => document.activeElement.blur());
+      // What can be seen and takes part in tabbing; a radio group counts once, by its name.
+      const want = await page.evaluate(() => {
+        const shown = [...document.querySelectorAll(
+          'a[href], button, input, select, summary, [tabindex="0"]')].filter((e) =>
+          e.tabIndex >= 0 && !e.disabled && e.checkVisibility({ visibilityProperty: true }));
+        let k = 0;
+        const keys = new Set();
+        for (const e of shown) {
+          if (e.type === "radio") e.dataset.walk = `radio ${e.name}`;
+          else e.dataset.walk = `${++k} ${e.tagName} ${e.className} ${e.id}`;
+          keys.add(e.dataset.walk);
+        }
+        return [...keys];
+      });
+      const seen = new Set();
+      for (let k = 0; k < 3 * want.length; ++k) {
+        await page.keyboard.press("Tab");
+        const at = await page.evaluate(() => {
+          const e = document.activeElement;
+          if (!e || e === document.body) return null;
+          const line = (node) => node && parseFloat(getComputedStyle(node).outlineWidth) >= 2 &&
+            getComputedStyle(node).outlineStyle !== "none";
+          return { walk: e.dataset.walk ?? `main ${e.id}`,
+            inSight: line(e) || line(e.closest(".stepper")) || line(e.nextElementSibling) ||
+              line(e.previousElementSibling) };
+        });
+        if (at === null || at.walk.startsWith("main")) continue;
+        assert.ok(at.inSight, `${tab}: focus on ${at.walk} cannot be seen`);
+        seen.add(at.walk);
+        if (seen.size === want.length) break;
+      }
+      assert.deepEqual(want.filter((name) => !seen.has(name)), [], tab);
+    }
+    assert.deepEqual(problems, []);
+    await close();
+  });
+
+  test("every control has a name of its own for a screen reader", async () => {
+    const { page, close } = await open();
+    for (const tab of TABS) {
+      await page.locator(`#tab-${tab}`).dispatchEvent("click");
+      const tree = await page.locator("body").ariaSnapshot();
+      const controls = tree.split("\n").filter((line) =>
+        /^\s*- (button|slider|spinbutton|combobox|checkbox|radio|tab|textbox|application|img)\b/.test(line));
+      assert.ok(controls.length > 20, `${tab}: ${controls.length}`);
+      assert.deepEqual(controls.filter((line) => !/- \w+ "[^"]+/.test(line)), [], tab);
+    }
+    await close();
+  });
+
+  test("with reduced motion nothing moves by itself", async () => {
+    const { page, close } = await open({ context: { reducedMotion: "reduce" } });
+    for (const tab of TABS) await page.locator(`#tab-${tab}`).dispatchEvent("click");
+    const moving = await page.evaluate(() => [...document.querySelectorAll("*")].filter((e) => {
+      const style = getComputedStyle(e);
+      return parseFloat(style.transitionDuration) > 0 || parseFloat(style.animationDuration) > 0;
+    }).length);
+    assert.equal(moving, 0);
+    await close();
+  });
+
+  test("it runs from any folder of a host, with types it knows nothing of", async () => {
+    const deep = await serve("/some/where/else/");
+    const { page, problems, close } = await openPage(browser, deep.url);
+    assert.equal(await number(page, "backVertex-right"), "−4.25 / −5.00");
+    await page.locator("#tab-solid").click();
+    assert.deepEqual(problems, []);
+    await close();
+    deep.close();
   });
 
   test("tabs follow the arrow keys", async () => {

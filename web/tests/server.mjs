@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The built page on loopback, as any static host would serve it.
+// The built page on loopback, as any static host would serve it: from the top or from a folder.
 
 import { createServer } from "node:http";
 import { readFile } from "node:fs/promises";
@@ -14,11 +14,13 @@ const TYPES = {
   ".svg": "image/svg+xml",
 };
 
-export async function serve() {
+export async function serve(folder = "/") {
   const server = createServer(async (request, response) => {
-    const path = normalize(new URL(request.url, "http://x").pathname);
+    const whole = normalize(new URL(request.url, "http://x").pathname);
     try {
-      const body = await readFile(join(dist, path === "/" ? "index.html" : path));
+      if (!whole.startsWith(folder)) throw new Error("not ours");
+      const path = whole.slice(folder.length);
+      const body = await readFile(join(dist, path === "" ? "index.html" : path));
       response.setHeader("content-type", TYPES[extname(path)] ?? "text/html");
       response.end(body);
     } catch {
@@ -27,5 +29,5 @@ export async function serve() {
     }
   });
   await new Promise((done) => server.listen(0, "127.0.0.1", done));
-  return { url: `http://127.0.0.1:${server.address().port}/`, close: () => server.close() };
+  return { url: `http://127.0.0.1:${server.address().port}${folder}`, close: () => server.close() };
 }

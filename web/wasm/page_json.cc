@@ -14,6 +14,7 @@ namespace {
 using Json = nlohmann::ordered_json;
 
 constexpr double kMaxLength_mm = 1e5;
+constexpr double kMaxLean_deg = 40;
 
 // Not-a-number and infinity (a plano radius) have no JSON; they become null.
 Json Number(double value) { return std::isfinite(value) ? Json(value) : Json(nullptr); }
@@ -34,6 +35,15 @@ std::optional<double> OptionalNumber(JsonReader& json, const char* key, double m
   return json.Number(key, min, max);
 }
 
+// With the cylinder's sign as the order writes it.
+Json FormJson(const PowerVector& power, const EyePrescription& as) {
+  const SphereCylinder form =
+      as.cylinder > Diopters(0) ? PlusCylinderForm(power) : MinusCylinderForm(power);
+  return {{"sphere", form.sphere.value()},
+          {"cylinder", form.cylinder.value()},
+          {"axis", form.axis.value()}};
+}
+
 Json EyeJson(const EyePrescription& rx) {
   return {{"sphere", rx.sphere.value()},     {"cylinder", rx.cylinder.value()},
           {"axis", rx.axis.value()},         {"add", rx.add.value()},
@@ -46,10 +56,11 @@ void ReadDesign(JsonReader& json, LensOrder& order) {
   const double corridor = json.NumberOr("corridor_mm", ProgressiveOrder{}.corridor_mm, 6, 30);
   const bool multifocal = order.rx.add.value() > 0;
   if (design == "single") return;
-  if (design == "progressive") {
+  if (design == "progressive" || design == "soft") {
     if (!multifocal) return;
     order.progressive.emplace();
     order.progressive->corridor_mm = corridor;
+    if (design == "soft") order.progressive->design = ProgressiveDesign::kSoft;
     return;
   }
   SegmentOrder segment;
@@ -61,8 +72,8 @@ void ReadDesign(JsonReader& json, LensOrder& order) {
   } else if (design == "flat35") {
     segment.width_mm = 35;
   } else if (design != "flat28") {
-    json.Fail("design",
-              "got " + design + ", want single, round, flat28, flat35, executive or progressive");
+    json.Fail("design", "got " + design +
+                            ", want single, round, flat28, flat35, executive, progressive or soft");
   }
   if (multifocal) order.segment = segment;
 }
@@ -123,6 +134,12 @@ Result<PageOrder> ReadOrder(const std::string& json_text) {
   }
   SheetRequest& request = page.request;
   order.vertex_distance_mm = json.NumberOr("vertex_distance_mm", 13, kMinVertex_mm, kMaxVertex_mm);
+  page.wear.vertex_distance_mm = order.vertex_distance_mm;
+  page.wear.pantoscopic_deg = json.NumberOr("pantoscopic_deg", 0, -kMaxLean_deg, kMaxLean_deg);
+  page.wear.face_form_deg = json.NumberOr("face_form_deg", 0, -kMaxLean_deg, kMaxLean_deg);
+  page.refraction_vertex_mm =
+      json.NumberOr("refraction_vertex_mm", order.vertex_distance_mm, kMinVertex_mm, kMaxVertex_mm);
+  page.compensate = json.BoolOr("compensate", false);
   request.observer.camera_mm =
       json.NumberOr("camera_mm", request.observer.camera_mm, 20, kMaxLength_mm);
   request.observer.depth_mm = json.NumberOr(
@@ -145,7 +162,9 @@ Result<double> Transmittance(const PageOrder& page, double thickness_mm) {
   return LuminousTransmittance(filter, 1, thickness_mm);
 }
 
-std::string SheetJson(const CertifiedLens& lens, const LensSheet& sheet, double transmittance) {
+std::string SheetJson(const CertifiedLens& lens, const PageOrder& page, const PageSheet& whole) {
+  const LensSheet& sheet = whole.sheet;
+  const double transmittance = whole.transmittance;
   Json certificate = Json::array();
   for (const Measurement& m : lens.certificate().measurements) {
     certificate.push_back({{"quantity", m.quantity},
@@ -159,6 +178,10 @@ std::string SheetJson(const CertifiedLens& lens, const LensSheet& sheet, double 
   }
   const Medium& medium = lens.lens().medium;
   const std::optional<int> category = FilterCategory(transmittance);
+  const EyePrescription& made = lens.design().order.rx;
+  Json worn = FormJson(whole.worn.power, page.order.rx);
+  worn["prism_in"] = whole.worn.prism_in;
+  worn["prism_up"] = whole.worn.prism_up;
   const Json out = {
       {"ok", true},
       {"index_d", medium.index_d},
@@ -188,6 +211,12 @@ std::string SheetJson(const CertifiedLens& lens, const LensSheet& sheet, double 
       {"observer_magnification_exact", sheet.observer_magnification_exact
                                            ? Number(*sheet.observer_magnification_exact)
                                            : Json(nullptr)},
+      {"made",
+       {{"sphere", made.sphere.value()},
+        {"cylinder", made.cylinder.value()},
+        {"axis", made.axis.value()}}},
+      {"target", FormJson(whole.target, page.order.rx)},
+      {"worn", worn},
       {"certificate", certificate},
   };
   return out.dump();

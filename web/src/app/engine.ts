@@ -26,6 +26,12 @@ export interface Cardinal {
   back_principal_mm: number | null;
 }
 
+export interface Form {
+  sphere: number;
+  cylinder: number;
+  axis: number;
+}
+
 export interface Sheet {
   ok: true;
   index_d: number;
@@ -52,6 +58,9 @@ export interface Sheet {
   observer_magnification_thin: number;
   observer_magnification_paraxial: number;
   observer_magnification_exact: number | null;
+  made: Form; // as ground
+  target: Form; // what the eye is to meet at the back vertex as worn
+  worn: Form & { prism_in: number; prism_up: number }; // what it meets, by rays
   certificate: Measurement[];
 }
 
@@ -93,6 +102,10 @@ export interface LensOrder {
   diameter_mm?: number;
   contour_mm?: number[];
   vertex_distance_mm: number;
+  pantoscopic_deg: number;
+  face_form_deg: number;
+  refraction_vertex_mm: number;
+  compensate: boolean;
   camera_mm: number;
   depth_mm: number;
   feature_height_mm: number;
@@ -114,9 +127,22 @@ export interface View {
   y1: number;
   depth_mm: number;
   face_x_mm: number;
-  flat_mm: number;
-  curve: number;
   rings: boolean;
+  mirrored: boolean;
+}
+
+// From the lens frame to the straight frame, in which camera and face stand still.
+export interface Worn {
+  turn: number[]; // a rotation, row by row
+  origin: [number, number, number]; // of the lens frame
+}
+
+export interface Reading {
+  mean: number;
+  j0: number;
+  j45: number;
+  prism: [number, number]; // toward the lens frame's x and y
+  rest: number; // what no sphere and cylinder explains, D
 }
 
 export interface FanRay {
@@ -127,22 +153,31 @@ export interface FanRay {
   direction: [number, number];
 }
 
-export const GAZE_ROW = 8; // status, mean, J0, J45, prism x, prism y, object tangents x, y
+// Status, mean, J0, J45, prism x, prism y, tangents of the object (x, y) and of the gaze (x, y).
+export const GAZE_ROW = 10;
+export const MIRRORED_ROW = 10; // see lg_mirrored in web/wasm/page_api.h
 
 export const SLOT = { right: 0, left: 1, compare: 2, practice: 3 } as const;
 
 export class Engine {
+  private readonly last = new Map<number, { order: string; sheet: Sheet }>();
   private constructor(private readonly module: OpticsModule) {}
 
   static async load(): Promise<Engine> {
     return new Engine(await create());
   }
 
-  // The sheet of the certified lens, or why there is none; the slot keeps its last good lens.
+  // The sheet of the certified lens, or why there is none; the slot keeps its last good lens. The
+  // very same order gives the very same sheet.
   design(slot: number, order: LensOrder): Sheet | Refusal {
-    return JSON.parse(
-      this.withText(JSON.stringify(order), (p) => this.module._lg_design(slot, p)),
+    const text = JSON.stringify(order);
+    const last = this.last.get(slot);
+    if (last?.order === text) return last.sheet;
+    const answer: Sheet | Refusal = JSON.parse(
+      this.withText(text, (p) => this.module._lg_design(slot, p)),
     );
+    if (answer.ok) this.last.set(slot, { order: text, sheet: answer });
+    return answer;
   }
 
   readPrescription(text: string, name: string): ReadPrescription | Refusal {
@@ -177,8 +212,10 @@ export class Engine {
   }
 
   // Pairs of (mean power, astigmatism) of a progressive front surface.
-  progressiveMap(far: number, add: number, corridor: number, index: number, half: number, n: number): Float64Array {
-    const at = this.module._lg_progressive_map(far, add, corridor, index, half, n) / 8;
+  progressiveMap(
+    far: number, add: number, corridor: number, index: number, soft: boolean, half: number, n: number,
+  ): Float64Array {
+    const at = this.module._lg_progressive_map(far, add, corridor, index, Number(soft), half, n) / 8;
     return this.module.HEAPF64.slice(at, at + 2 * n * n);
   }
 
@@ -216,11 +253,25 @@ export class Engine {
     return rays;
   }
 
-  // Four numbers a pixel: status (0 ok), point of the face (x, y) in the lens frame, light kept.
+  worn(slot: number): Worn {
+    const at = this.module._lg_worn(slot) / 8;
+    const [...all] = this.module.HEAPF64.slice(at, at + 12);
+    return { turn: all.slice(0, 9), origin: [all[9], all[10], all[11]] };
+  }
+
+  // A focimeter's reading at (x, y) of the lens; null where nothing can be read.
+  focimeter(slot: number, x: number, y: number, turned: boolean): Reading | null {
+    const at = this.module._lg_focimeter(slot, x, y, Number(turned)) / 8;
+    const [mean, j0, j45, px, py, rest] = this.module.HEAPF64.slice(at, at + 6);
+    return Number.isNaN(mean) ? null : { mean, j0, j45, prism: [px, py], rest };
+  }
+
+  // Four numbers a pixel: status (0 ok), where the camera sees that point of the face without the
+  // lens (x from the middle of the face, y; mm in the plane of the lens), light kept.
   view(slot: number, view: View, width: number, height: number): Float32Array {
     const fields = [
       view.camera_mm, view.cx, view.cy, view.x0, view.y0, view.x1, view.y1,
-      view.depth_mm, view.face_x_mm, view.flat_mm, view.curve, Number(view.rings),
+      view.depth_mm, view.face_x_mm, Number(view.rings), Number(view.mirrored),
     ];
     const at = this.module._malloc(8 * fields.length);
     this.module.HEAPF64.set(fields, at / 8);
@@ -229,10 +280,16 @@ export class Engine {
     return this.module.HEAPF32.slice(out / 4, out / 4 + 4 * width * height);
   }
 
-  // The power rings beside the last view that asked for them, of this many pixels: share of light from the edge's wall.
+  // Beside the last view that asked for them, of this many pixels: share of the edge wall's light.
   rings(count: number): Float32Array {
     const at = this.module._lg_rings() / 4;
     return this.module.HEAPF32.slice(at, at + count);
+  }
+
+  // Beside the last view that asked for it: MIRRORED_ROW numbers a pixel.
+  mirrored(count: number): Float32Array {
+    const at = this.module._lg_mirrored() / 4;
+    return this.module.HEAPF32.slice(at, at + MIRRORED_ROW * count);
   }
 
   private withPointer(text: string, call: (pointer: number) => number): number {

@@ -2,6 +2,7 @@
 // A face to look through lenses at: drawn here, or the user's own photograph. Coordinates are mm in
 // the plane of the lenses as the camera sees them, x to the viewer's right, y up, 0 between the eyes.
 
+import type { Pupils } from "./eye_picture";
 import type { EyeName } from "./order";
 
 export const WINDOW = { left: -84, right: 84, top: 46, bottom: -46 };
@@ -9,13 +10,6 @@ export const PX_PER_MM = 6;
 export const WIDTH = (WINDOW.right - WINDOW.left) * PX_PER_MM;
 export const HEIGHT = (WINDOW.top - WINDOW.bottom) * PX_PER_MM;
 
-// How the face recedes toward the temples, for PageView of the optics.
-export const FACE_SHAPE = { flat_mm: 44, curve: 4 };
-
-export interface Pupils {
-  right: { x: number; y: number };
-  left: { x: number; y: number };
-}
 
 type Context = CanvasRenderingContext2D;
 
@@ -107,7 +101,7 @@ function drawEye(ctx: Context, x: number, y: number, side: 1 | -1, iris: number)
   ctx.restore();
 }
 
-export function drawFace(ctx: Context, pupils: Pupils, irisRadius: number): void {
+export function drawFace(ctx: Context, pupils: Pupils): void {
   ctx.setTransform(1, 0, 0, 1, 0, 0);
   const background = ctx.createLinearGradient(0, 0, WIDTH, HEIGHT);
   background.addColorStop(0, "#9db2b7");
@@ -174,8 +168,8 @@ export function drawFace(ctx: Context, pupils: Pupils, irisRadius: number): void
     ctx.fill(new Path2D("M80 60C80 30 79 8 75 -13C73 -7 70.6 -6 69.6 -3C69.4 12 69 26 64 37C62 43 58 48 54 60Z"));
     ctx.restore();
   }
-  drawEye(ctx, pupils.right.x, pupils.right.y, -1, irisRadius);
-  drawEye(ctx, pupils.left.x, pupils.left.y, 1, irisRadius);
+  drawEye(ctx, pupils.right.x, pupils.right.y, -1, pupils.iris);
+  drawEye(ctx, pupils.left.x, pupils.left.y, 1, pupils.iris);
   ctx.setTransform(1, 0, 0, 1, 0, 0);
 }
 

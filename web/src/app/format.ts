@@ -19,3 +19,14 @@ export function parseNumber(text: string): number {
   const plain = text.trim().replace("−", "-").replace(",", ".");
   return /^[+-]?(\d+\.?\d*|\.\d+)$/.test(plain) ? Number(plain) : Number.NaN;
 }
+
+// "−4.25 −0.75 × 160"; without a cylinder that shows at these places, the sphere alone.
+export function rxText(
+  form: { sphere: number; cylinder: number; axis: number | null },
+  places = 2,
+): string {
+  if (Math.abs(form.cylinder) < 0.5 * 10 ** -places) return signed(form.sphere, places);
+  const axis = form.axis || 180;
+  const whole = Math.abs(axis - Math.round(axis)) < 0.05;
+  return `${signed(form.sphere, places)} ${signed(form.cylinder, places)} × ${fixed(axis, whole ? 0 : 1)}`;
+}

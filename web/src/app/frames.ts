@@ -74,7 +74,7 @@ export interface OmaTrace {
   dbl: number | null;
 }
 
-const OMA_RADII = 72;
+const OMA_RADII = 120;
 
 // Shape and box out of an OMA/VCA file with TRCFMT 1 (radii in 1/100 mm); a sentence when it is not.
 export function readOma(text: string): OmaTrace | string {
@@ -104,7 +104,9 @@ export function readOma(text: string): OmaTrace | string {
     // A left trace is the right one mirrored: R[k] = L[(N/2 - k) mod N].
     const at = (k * wanted) / OMA_RADII;
     const turned = trace.side === "L" ? (wanted / 2 - at + wanted) % wanted : at;
-    return trace.radii[Math.round(turned) % wanted];
+    const low = Math.floor(turned);
+    const [r0, r1] = [trace.radii[low % wanted], trace.radii[(low + 1) % wanted]];
+    return Math.round(100 * (r0 + (turned - low) * (r1 - r0))) / 100; // as a link carries it
   });
   const xs = radii.map((r, k) => r * Math.cos((2 * Math.PI * k) / OMA_RADII));
   const ys = radii.map((r, k) => r * Math.sin((2 * Math.PI * k) / OMA_RADII));

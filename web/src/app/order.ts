@@ -3,7 +3,7 @@
 
 import { contourOf, type FrameShape } from "./frames";
 import { MEDIA } from "./media";
-import type { LensOrder } from "./engine";
+import type { LensOrder, Sheet } from "./engine";
 import type { TextKey } from "./texts";
 
 export type EyeName = "right" | "left";
@@ -34,7 +34,11 @@ export interface Order {
   a: number; // boxing, mm
   b: number;
   dbl: number;
-  vertex: number; // mm
+  vertex: number; // mm, back vertex to cornea as worn
+  refraction: number | null; // mm, the same when the eyes were tested; null: as worn
+  panto: number; // degrees, lower edge toward the cheek positive
+  wrap: number; // degrees of face form, temporal edge toward the head positive
+  compensate: boolean; // make the lens so that as worn it does what the prescription asks
   camera: number; // mm before the lens
   tint: number; // per cent of light that an even dip tint takes
   trace: number[] | null; // radii of a traced shape, mm, from an OMA file; replaces `shape`
@@ -67,6 +71,10 @@ export const DEFAULT_ORDER: Order = {
   b: 41,
   dbl: 19,
   vertex: 13,
+  refraction: null,
+  panto: 0,
+  wrap: 0,
+  compensate: false,
   camera: 600,
   tint: 0,
   trace: null,
@@ -94,6 +102,9 @@ export const LIMITS = {
   b: { min: 18, max: 65, step: 1, places: 0 },
   dbl: { min: 8, max: 30, step: 1, places: 0 },
   vertex: { min: 5, max: 25, step: 0.5, places: 1 },
+  refraction: { min: 5, max: 25, step: 0.5, places: 1 },
+  panto: { min: -5, max: 30, step: 1, places: 0 },
+  wrap: { min: -5, max: 30, step: 1, places: 0 },
   camera: { min: 200, max: 4000, step: 50, places: 0 },
   corridor: { min: 8, max: 24, step: 1, places: 0 },
   tint: { min: 0, max: 90, step: 5, places: 0 },
@@ -119,6 +130,20 @@ export function transposed(rx: EyeRx): { sphere: number; cylinder: number; axis:
   };
 }
 
+export const meanOf = (form: { sphere: number; cylinder: number }): number =>
+  form.sphere + form.cylinder / 2;
+
+// Whether the lens is worn otherwise than the eyes were tested.
+export const wornOtherwise = (order: Order): boolean =>
+  order.panto !== 0 || order.wrap !== 0 || (order.refraction ?? order.vertex) !== order.vertex;
+
+// The lens's principal meridians, along its cylinder axis and across it, degrees.
+export function meridiansOf(sheet: Sheet): [number, number] {
+  const { cylinder, axis } = sheet.made;
+  const along = Math.abs(cylinder) < 1e-9 ? 180 : axis || 180;
+  return [along, along > 90 ? along - 90 : along + 90];
+}
+
 // Position of the optical centre in the boxed lens: toward the nose positive, mm.
 export const decentration = (order: Order, eye: EyeName): number =>
   (order.a + order.dbl) / 2 - order[eye].pd;
@@ -142,6 +167,10 @@ export function lensOrder(order: Order, eye: EyeName, change: Partial<Order> = {
     min_edge_thickness_mm: o.minEdge,
     contour_mm: contourOf(o, eye).flat(),
     vertex_distance_mm: o.vertex,
+    pantoscopic_deg: o.panto,
+    face_form_deg: o.wrap,
+    refraction_vertex_mm: o.refraction ?? o.vertex,
+    compensate: o.compensate,
     camera_mm: o.camera,
     depth_mm: o.vertex + 3.05,
     feature_height_mm: IRIS_RADIUS_MM,
@@ -158,7 +187,8 @@ export const IRIS_RADIUS_MM = 5.85;
 
 const EYE_FIELDS = ["sphere", "cylinder", "axis", "add", "prismIn", "prismUp", "pd"] as const;
 const NUMBER_FIELDS = [
-  "base", "centre", "minCentre", "minEdge", "a", "b", "dbl", "vertex", "camera", "tint", "corridor",
+  "base", "centre", "minCentre", "minEdge", "a", "b", "dbl", "vertex", "refraction", "panto",
+  "wrap", "camera", "tint", "corridor",
 ] as const;
 
 // The order as the part of a link after "#".
@@ -172,7 +202,8 @@ export function toLink(order: Order): string {
   q.set("d", order.design);
   q.set("c", order.coat);
   for (const f of NUMBER_FIELDS) if (order[f] !== null) q.set(f, String(order[f]));
-  if (order.trace) q.set("t", order.trace.map((r) => Math.round(r * 10)).join("_"));
+  if (order.compensate) q.set("compensate", "1");
+  if (order.trace) q.set("t", order.trace.map((r) => Math.round(r * 100)).join("_"));
   return q.toString();
 }
 
@@ -209,11 +240,12 @@ export function fromLink(link: string): Order {
     const value = within(f, q.get(f));
     if (value !== undefined) order[f] = value;
   }
-  const trace = q.get("t")?.split("_").map((r) => Number(r) / 10);
+  order.compensate = q.get("compensate") === "1";
+  const trace = q.get("t")?.split("_").map((r) => Number(r) / 100);
   if (trace && trace.length >= 12 && trace.every((r) => r >= 5 && r <= 60)) order.trace = trace;
   return order;
 }
 
-export const DESIGNS = ["single", "round", "flat28", "flat35", "executive", "progressive"];
+export const DESIGNS = ["single", "round", "flat28", "flat35", "executive", "progressive", "soft"];
 export const COATS = ["none", "single", "v", "broadband"];
 export const SHAPES: FrameShape[] = ["panto", "round", "oval", "rect"];

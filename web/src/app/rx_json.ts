@@ -18,6 +18,6 @@ export function toOurs(order: Order): Record<string, unknown> {
     OD: eye("right"),
     OS: eye("left"),
     PD: { right: order.right.pd, left: order.left.pd },
-    vertex_distance: order.vertex,
+    vertex_distance: order.refraction ?? order.vertex,
   };
 }

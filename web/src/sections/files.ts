@@ -44,7 +44,8 @@ function take(store: Store, name: string, text: string): { good: boolean; text: 
       ...store.order,
       right: eyeFrom(read.OD, read.PD?.right ?? store.order.right.pd),
       left: eyeFrom(read.OS, read.PD?.left ?? store.order.left.pd),
-      vertex: read.vertex_distance ?? store.order.vertex,
+      // A prescription's vertex distance is that of the refraction.
+      refraction: read.vertex_distance === store.order.vertex ? null : read.vertex_distance,
     });
     return { good: true, text: t("files.tookRx", { name }) };
   }
@@ -97,8 +98,8 @@ export function filesCard(store: Store, changed: () => void): HTMLElement {
           tell(true, t("files.linkShown"));
         }
       }),
+      file, // before its label, which shows its focus
       h("label", { class: "quiet as-button", for: id }, t("files.open")),
-      file,
       button(t("files.saveJson"), () => save("prescription.json", ours(2))),
       button(t("files.saveFhir"), () => {
         const date = new Date().toISOString().replace(/\.\d+Z$/, "Z");

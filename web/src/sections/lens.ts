@@ -6,7 +6,7 @@ import { SLOT, type Engine, type Sheet } from "../app/engine";
 import { fixed, signed } from "../app/format";
 import { contourOf, reach } from "../app/frames";
 import { MEDIA } from "../app/media";
-import { LIMITS, decentration, lensOrder, type Order } from "../app/order";
+import { LIMITS, decentration, lensOrder, meridiansOf, type Order } from "../app/order";
 import type { Store } from "../app/store";
 import { t } from "../app/texts";
 import { view } from "../app/view";
@@ -182,8 +182,6 @@ export function lensSection(store: Store, wanted: () => boolean): HTMLElement {
     const { order, sheet } = store.lenses;
     const { eye } = view;
     const { engine } = store;
-    const axis = order[eye].cylinder === 0 ? 180 : (order[eye].axis ?? 180) || 180;
-    const across = axis > 90 ? axis - 90 : axis + 90;
     let other: Sheet | null = null;
     let problem: string | null = null;
     const changed = { medium: compareMedium.value || order.medium, base: compareBase ?? order.base };
@@ -193,8 +191,9 @@ export function lensSection(store: Store, wanted: () => boolean): HTMLElement {
       else problem = answer.error;
     }
     drawings.replaceChildren(
-      ...[axis, across].map((meridian, which) => {
-        const title = t(which === 0 ? "lens.along" : "lens.across", { meridian });
+      ...meridiansOf(sheet[eye]).map((meridian, which) => {
+        const title = t(which === 0 ? "lens.along" : "lens.across",
+          { meridian: fixed(meridian, Number.isInteger(meridian) ? 0 : 1) });
         return h("figure", {},
           drawSection(
             sectionOf(engine, SLOT[eye], order, meridian),

@@ -3,6 +3,7 @@
 // under lesson.<id>; answers are computed here from the formulas that the lesson teaches.
 
 import type { EyeRx, Order } from "../app/order";
+import type { MapKind } from "./maps";
 
 export type Question =
   | { kind: "number"; answer: number; tolerance: number; unit: string }
@@ -12,7 +13,12 @@ export interface Lesson {
   id: string;
   paragraphs: number;
   look: "overview" | "rays" | "maps" | "why";
-  lens: Partial<Omit<Order, "right" | "left">> & { rx: Partial<EyeRx> };
+  explain?: string; // which number the "why" opens
+  map?: MapKind; // which map the maps open with
+  lens: Partial<Omit<Order, "right" | "left">> & {
+    rx: Partial<EyeRx>;
+    other?: Partial<EyeRx>; // how the left eye differs
+  };
   questions: Question[];
 }
 
@@ -45,13 +51,15 @@ export const LESSONS: Lesson[] = [
     id: "vertex",
     paragraphs: 2,
     look: "why",
-    lens: { rx: { sphere: -12, cylinder: 0, axis: null }, vertex: 14 },
+    explain: "worn",
+    lens: { rx: { sphere: -12, cylinder: 0, axis: null }, vertex: 14, refraction: 10 },
     questions: [number(moved(-12, -4), "D", 0.02), number(moved(-6, 12), "D", 0.02), choice(1)],
   },
   {
     id: "prentice",
     paragraphs: 2,
     look: "maps",
+    map: "prism",
     lens: { rx: { sphere: -6, cylinder: 0, axis: null } },
     questions: [number(0.5 * 6, "Δ", 0.02), choice(1), number(0.8 * 5, "Δ", 0.02)],
   },
@@ -80,14 +88,16 @@ export const LESSONS: Lesson[] = [
     id: "minkwitz",
     paragraphs: 2,
     look: "maps",
+    map: "progAstigmatism",
     lens: { rx: { sphere: 0, cylinder: 0, axis: null, add: 2 }, design: "progressive", base: 5 },
     questions: [number(2 * (2 / 14), "D/mm", 0.006), number(2 * (2 / 14) * 5, "D", 0.03), choice(1)],
   },
   {
     id: "tilt",
     paragraphs: 2,
-    look: "rays",
-    lens: { rx: { sphere: 6, cylinder: 0, axis: null } },
+    look: "why",
+    explain: "worn",
+    lens: { rx: { sphere: 6, cylinder: 0, axis: null }, panto: 15 },
     questions: [
       number(martinSphere(6, 15, 1.5), "D", 0.02),
       number(martinSphere(6, 15, 1.5) * tangent(15) ** 2, "D", 0.02),
@@ -105,7 +115,30 @@ export const LESSONS: Lesson[] = [
     id: "edge",
     paragraphs: 2,
     look: "overview",
-    lens: { rx: { sphere: -6, cylinder: 0, axis: null }, medium: "1.60", shape: "round", a: 60, dbl: 4 },
-    questions: [number(1.5 + (900 * 6) / (2000 * 0.6), "mm", 0.06), choice(1)],
+    lens: { rx: { sphere: -6, cylinder: 0, axis: null }, medium: "1.60", base: 2, centre: 1.5,
+      shape: "round", a: 60, dbl: 4 },
+    questions: [number(1.5 + (900 * 6) / (2000 * 0.594), "mm", 0.06), choice(1)],
+  },
+  {
+    id: "imbalance",
+    paragraphs: 2,
+    look: "maps",
+    map: "prism",
+    lens: { rx: { sphere: -2, cylinder: 0, axis: null }, other: { sphere: -5 } },
+    questions: [number(0.8 * (5 - 2), "Δ", 0.02), choice(0)],
+  },
+  {
+    id: "decentration",
+    paragraphs: 2,
+    look: "overview",
+    lens: { rx: { sphere: -6, cylinder: 0, axis: null, pd: 31 }, a: 52, b: 40, dbl: 18 },
+    questions: [number((52 + 18 - 62) / 2, "mm", 0.05), number(0.1 * 6, "Δ", 0.02)],
+  },
+  {
+    id: "light",
+    paragraphs: 2,
+    look: "overview",
+    lens: { rx: { sphere: -3, cylinder: 0, axis: null }, medium: "1.60", coat: "broadband" },
+    questions: [number((100 * 2 * 1.6) / (1.6 ** 2 + 1), "%", 0.1), choice(2)],
   },
 ];

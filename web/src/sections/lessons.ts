@@ -8,6 +8,7 @@ import { t, type TextKey } from "../app/texts";
 import { view } from "../app/view";
 import { h, uniqueId } from "../ui/dom";
 import { LESSONS, type Lesson, type Question } from "./lesson_list";
+import type { MapKind } from "./maps";
 
 type Verdict = (right: boolean) => void;
 
@@ -56,7 +57,12 @@ function choiceQuestion(key: string, q: Question & { kind: "choice" }, done: Ver
   return h("fieldset", { class: "question" }, h("legend", {}, t(key as TextKey)), ...options, line);
 }
 
-export function lessonsSection(store: Store): HTMLElement {
+export interface Openers {
+  explain(key: string): void;
+  map(kind: MapKind): void;
+}
+
+export function lessonsSection(store: Store, open: Openers): HTMLElement {
   const right = new Set<string>();
   const total = LESSONS.reduce((sum, lesson) => sum + lesson.questions.length, 0);
   const score = h("p", { class: "score", role: "status" });
@@ -70,9 +76,11 @@ export function lessonsSection(store: Store): HTMLElement {
   };
 
   function load(lesson: Lesson): void {
-    const { rx, ...rest } = lesson.lens;
+    const { rx, other, ...rest } = lesson.lens;
     const eye: EyeRx = { ...DEFAULT_ORDER.right, ...rx };
-    store.take({ ...DEFAULT_ORDER, ...rest, right: eye, left: eye });
+    store.take({ ...DEFAULT_ORDER, ...rest, right: eye, left: { ...eye, ...other } });
+    if (lesson.explain) return open.explain(lesson.explain);
+    if (lesson.map) open.map(lesson.map);
     view.openTab(lesson.look);
     document.getElementById(`tab-${lesson.look}`)?.focus();
   }

@@ -5,6 +5,7 @@
 import { GAZE_ROW, SLOT } from "../app/engine";
 import { fixed, signed } from "../app/format";
 import { contourOf } from "../app/frames";
+import { meridiansOf } from "../app/order";
 import type { Store } from "../app/store";
 import { t, type TextKey } from "../app/texts";
 import { view } from "../app/view";
@@ -34,15 +35,23 @@ interface Field {
   signed: boolean;
 }
 
-export function mapsSection(store: Store, wanted: () => boolean): HTMLElement {
+export type MapKind = Kind;
+export interface MapsSection {
+  root: HTMLElement;
+  choose(kind: MapKind): void;
+}
+
+export function mapsSection(store: Store, wanted: () => boolean): MapsSection {
   let kind: Kind = "astigmatism";
   let field: Field | null = null;
   const select = h("select", { id: uniqueId("map"), onchange: () => {
     kind = select.value as Kind;
     draw();
   } }, ...KINDS.map((k) => h("option", { value: k, selected: k === kind }, t(`maps.${k}` as TextKey))));
-  const drawing = s("svg", { class: "map-drawing", role: "img" });
-  const readout = h("p", { class: "told" });
+  const drawing = s("svg", { class: "map-drawing", role: "application", tabindex: 0 });
+  const probe = s("circle", { class: "probe", r: 1.1, visibility: "hidden" });
+  let probed: [number, number] | null = null; // column and row
+  const readout = h("p", { class: "told", role: "status", "aria-live": "polite" });
   const summary = h("p", { class: "hint" });
   const text = h("p", { class: "hint" });
   const legend = h("div", { class: "legend" });
@@ -81,7 +90,7 @@ export function mapsSection(store: Store, wanted: () => boolean): HTMLElement {
         : kind === "power" ? r[1]
         : kind === "astigmatism" ? 2 * Math.hypot(r[2], r[3])
         : kind === "prism" ? Math.hypot(r[4], r[5])
-        : 100 * (Math.hypot(r[6], r[7]) / Math.hypot(...lookTangents(k, halfX, halfY)) - 1);
+        : 100 * (Math.hypot(r[6], r[7]) / Math.hypot(r[8], r[9]) - 1);
     }
     // In the very middle the ratio of two zeros stands for its limit beside it.
     const middle = (ROWS >> 1) * COLUMNS + (COLUMNS >> 1);
@@ -95,10 +104,6 @@ export function mapsSection(store: Store, wanted: () => boolean): HTMLElement {
       signed: kind === "power" || kind === "distortion",
     };
   }
-  const lookTangents = (k: number, halfX: number, halfY: number): [number, number] => [
-    (halfX * ((2 * (k % COLUMNS)) / (COLUMNS - 1) - 1)) / STOP_MM,
-    (halfY * (1 - (2 * Math.floor(k / COLUMNS)) / (ROWS - 1))) / STOP_MM,
-  ];
 
   function progressiveField(): Field {
     const { order, sheet } = store.lenses;
@@ -106,7 +111,7 @@ export function mapsSection(store: Store, wanted: () => boolean): HTMLElement {
     const add = order[view.eye].add;
     const n = PROGRESSIVE_GRID;
     const pairs = store.engine.progressiveMap(sheet[view.eye].front_power_D[0], add, corridor,
-      sheet[view.eye].index_d, PROGRESSIVE_HALF_MM, n);
+      sheet[view.eye].index_d, order.design === "soft", PROGRESSIVE_HALF_MM, n);
     const which = kind === "progPower" ? 0 : 1;
     const values = Float64Array.from({ length: n * n }, (_, k) => pairs[2 * k + which]);
     const half = PROGRESSIVE_HALF_MM;
@@ -151,6 +156,7 @@ export function mapsSection(store: Store, wanted: () => boolean): HTMLElement {
 
   function draw(): void {
     const progressive = kind === "progPower" || kind === "progAstigmatism";
+    if (field && progressive !== (field.grid.n === PROGRESSIVE_GRID)) probed = null;
     minkwitzFigure.hidden = !progressive;
     gazeFigure.hidden = progressive;
     const { order } = store.lenses;
@@ -205,17 +211,38 @@ export function mapsSection(store: Store, wanted: () => boolean): HTMLElement {
         ...lines, ...(kind === "distortion" ? gridLines(f, at) : [])),
       s("path", { class: "map-rim", d: path }),
       s("path", { class: "cross", d: "M-1.5 0H1.5M0-1.5V1.5" }),
-      ...labels);
+      ...labels, probe);
     const title = t("maps.summary", { what: t(`maps.${kind}` as TextKey),
       low: show(f, low), high: show(f, high) });
     setText(summary, title);
-    drawing.setAttribute("aria-label", title);
+    drawing.setAttribute("aria-label", `${title} ${t("maps.keys")}`);
     legend.replaceChildren(
       h("span", {}, show(f, centred ? -reach : kind === "progPower" ? bottom : 0)),
       h("span", { class: "legend-bar", style: `background:linear-gradient(to right,${Array.from(
         { length: 9 }, (_, i) => `rgb(${(centred ? aroundZero : rising)(i / 8).map(Math.round).join(" ")})`).join(",")})` }),
       h("span", {}, show(f, centred ? reach : kind === "progPower" ? top : Math.max(top, 0.25))));
-    setText(readout, t("maps.point"));
+    if (!probed || !tell(...probed)) {
+      probe.setAttribute("visibility", "hidden");
+      setText(readout, t("maps.point"));
+    }
+  }
+
+  // The value at a point of the grid; false where that lies off the lens.
+  function tell(i: number, j: number): boolean {
+    if (!field) return false;
+    const { n, m, values } = field.grid;
+    const x = field.halfX * ((2 * i) / (n - 1) - 1);
+    const y = field.halfY * ((2 * j) / (m - 1) - 1);
+    if (i < 0 || j < 0 || i >= n || j >= m || !inside(x, y, field.outline)) return false;
+    probed = [i, j];
+    const value = values[j * n + i];
+    probe.setAttribute("cx", String(x));
+    probe.setAttribute("cy", String(y));
+    probe.setAttribute("visibility", "visible");
+    setText(readout, t("maps.here", {
+      x: signed(x, 1), y: signed(-y, 1), value: Number.isNaN(value) ? "–" : show(field, value),
+    }));
+    return true;
   }
 
   // The straight lines of a grid far away, as gaze meets them through the lens.
@@ -235,9 +262,7 @@ export function mapsSection(store: Store, wanted: () => boolean): HTMLElement {
   }
 
   function drawLine(): void {
-    const { order } = store.lenses;
-    const rx = order[view.eye];
-    const axis = rx.cylinder === 0 ? 180 : (rx.axis ?? 180) || 180;
+    const [axis] = meridiansOf(store.lenses.sheet[view.eye]);
     const rows = store.engine.gazeLine(SLOT[view.eye], STOP_MM, axis, LINE_MAX_DEG, LINE_STEPS);
     const column = (c: number): (number | null)[] => Array.from({ length: LINE_STEPS + 1 }, (_, i) =>
       Number.isNaN(rows[3 * i + c]) ? null : rows[3 * i + c]);
@@ -250,19 +275,32 @@ export function mapsSection(store: Store, wanted: () => boolean): HTMLElement {
     if (!matrix) return;
     const p = new DOMPoint((event as PointerEvent).clientX, (event as PointerEvent).clientY)
       .matrixTransform(matrix.inverse());
-    const { n, m, values } = field.grid;
-    const i = Math.round(((p.x / field.halfX + 1) / 2) * (n - 1));
-    const j = Math.round(((p.y / field.halfY + 1) / 2) * (m - 1));
-    if (i < 0 || j < 0 || i >= n || j >= m || !inside(p.x, p.y, field.outline)) return;
-    const value = values[j * n + i];
-    setText(readout, t("maps.here", {
-      x: signed(p.x, 1), y: signed(-p.y, 1),
-      value: Number.isNaN(value) ? "–" : show(field, value),
-    }));
+    const { n, m } = field.grid;
+    tell(Math.round(((p.x / field.halfX + 1) / 2) * (n - 1)),
+      Math.round(((p.y / field.halfY + 1) / 2) * (m - 1)));
+  });
+  drawing.addEventListener("keydown", (event) => {
+    const moves: Record<string, [number, number]> = {
+      ArrowLeft: [-1, 0], ArrowRight: [1, 0], ArrowUp: [0, -1], ArrowDown: [0, 1],
+    };
+    const { key } = event as KeyboardEvent;
+    if (!field || !(key in moves || key === "Home")) return;
+    event.preventDefault();
+    const middle: [number, number] = [field.grid.n >> 1, field.grid.m >> 1];
+    const [i, j] = key === "Home" ? middle : (probed ?? middle);
+    const [di, dj] = moves[key] ?? [0, 0];
+    tell(i + di, j + dj);
   });
   store.onLenses(draw, wanted);
   view.onChange(() => {
     if (wanted()) draw();
   });
-  return root;
+  return {
+    root,
+    choose(next) {
+      kind = next;
+      select.value = next;
+      if (wanted()) draw();
+    },
+  };
 }

@@ -2,8 +2,8 @@
 // The numbers of both lenses; each row leads to where it is explained.
 
 import type { Pair, Sheet } from "../app/engine";
-import { fixed, signed } from "../app/format";
-import { EYES } from "../app/order";
+import { fixed, rxText, signed } from "../app/format";
+import { EYES, wornOtherwise, type Order } from "../app/order";
 import type { Store } from "../app/store";
 import { t, type TextKey } from "../app/texts";
 import { h, setText } from "../ui/dom";
@@ -18,9 +18,12 @@ interface Row {
   key: string; // explained under why.<key>
   unit: string;
   show(sheet: Sheet): string;
+  shown?(order: Order): boolean; // always where it does not say
 }
 
 const ROWS: Row[] = [
+  { key: "made", unit: "D", show: (s) => rxText(s.made), shown: (order) => order.compensate },
+  { key: "worn", unit: "D", show: (s) => rxText(s.worn), shown: wornOtherwise },
   { key: "backVertex", unit: "D", show: (s) => powers(s.back_vertex_power_D) },
   { key: "frontVertex", unit: "D", show: (s) => powers(s.front_vertex_power_D) },
   { key: "equivalent", unit: "D", show: (s) => powers(s.equivalent_power_D) },
@@ -32,6 +35,7 @@ const ROWS: Row[] = [
   { key: "edge", unit: "mm", show: (s) =>
       `${fixed(s.edge_thickness_mm[0], 2)} … ${fixed(s.edge_thickness_mm[1], 2)}` },
   { key: "mass", unit: "g", show: (s) => fixed(s.mass_g, 1) },
+  { key: "blank", unit: "mm", show: (s) => fixed(s.min_blank_mm, 0) },
   { key: "light", unit: "%", show: (s) => fixed(100 * s.luminous_transmittance, 1) },
   { key: "wearer", unit: "%", show: (s) =>
       both(s.spectacle_magnification, (v) => signed(100 * ((v ?? 1) - 1), 2)) },
@@ -45,7 +49,7 @@ export function numbersSection(
   explain: (key: string) => void,
 ): HTMLElement {
   const cells = new Map<string, HTMLElement>();
-  const body = ROWS.map((row) => {
+  const lines = ROWS.map((row) => {
     const values = EYES.map((eye) => {
       const cell = h("td", { "data-number": `${row.key}-${eye}` });
       cells.set(`${row.key}-${eye}`, cell);
@@ -64,13 +68,16 @@ export function numbersSection(
     h("table", {},
       h("thead", {}, h("tr", {}, h("td", {}),
         ...EYES.map((eye) => h("th", { scope: "col" }, t(`eye.${eye}` as TextKey))))),
-      h("tbody", {}, ...body,
+      h("tbody", {}, ...lines,
         h("tr", {}, h("th", { scope: "row" },
           h("button", { type: "button", class: "why-link", onclick: () => explain("certificate") },
             t("number.certificate"))), ...verdicts))),
     h("p", { class: "hint" }, t("numbers.hint")));
 
-  store.onLenses(({ sheet }) => {
+  store.onLenses(({ order, sheet }) => {
+    ROWS.forEach((row, i) => {
+      lines[i].hidden = !(row.shown?.(order) ?? true);
+    });
     EYES.forEach((eye, i) => {
       for (const row of ROWS) setText(cells.get(`${row.key}-${eye}`)!, row.show(sheet[eye]));
       const tests = sheet[eye].certificate;

@@ -17,6 +17,7 @@ import { filesCard } from "./files";
 interface EyeCard {
   root: HTMLElement;
   show(rx: EyeRx): void;
+  setImpossible(impossible: boolean): void;
 }
 
 function eyeCard(store: Store, eye: EyeName): EyeCard {
@@ -103,6 +104,7 @@ function eyeCard(store: Store, eye: EyeName): EyeCard {
         : t("rx.spherical"),
     );
   }
+  let impossible = false;
   const heading = uniqueId("eye");
   const root = h("section", { class: `card eye eye-${eye}`, "aria-labelledby": heading },
     h("h3", { id: heading }, t(`eye.${eye}` as TextKey),
@@ -124,6 +126,11 @@ function eyeCard(store: Store, eye: EyeName): EyeCard {
       draft = rx;
       for (const [name, f] of Object.entries(fields)) f.set(rx[name as keyof EyeRx]);
       follow();
+    },
+    // Says it at the power too: the alert above the form may be out of sight.
+    setImpossible(now) {
+      if (now || impossible) fields.sphere.setProblem(now ? t("error.impossibleHere") : null);
+      impossible = now;
     },
   };
 }
@@ -187,6 +194,8 @@ export function orderForm(store: Store): HTMLElement {
       showOrder();
     },
   );
+  const compensate = h("input", { type: "checkbox", onchange: () =>
+    store.set({ compensate: compensate.checked }) });
   const problem = h("div", { class: "problem", role: "alert", hidden: true });
 
   // Beside the drawings the whole form is open; above them, on a narrow screen, it would hide them.
@@ -199,15 +208,18 @@ export function orderForm(store: Store): HTMLElement {
       designField, designHint, corridor,
       h("div", { class: "row2" }, field("base", "D", true, 4), field("centre", "mm", true, 2)),
       h("div", { class: "row2" }, field("minCentre", "mm"), field("minEdge", "mm")),
-      coatField),
+      coatField,
+      h("div", { class: "row2" }, field("tint", "%"))),
     h("section", { class: "card" },
       h("h3", {}, t("order.frame")),
       shapeField,
       h("div", { class: "row3" }, field("a", "mm"), field("b", "mm"), field("dbl", "mm"))),
     h("section", { class: "card" },
       h("h3", {}, t("order.wear")),
-      h("div", { class: "row3" }, field("vertex", "mm"), field("camera", "mm"),
-        field("tint", "%"))),
+      h("div", { class: "row3" }, field("vertex", "mm"), field("panto", "°"), field("wrap", "°")),
+      h("div", { class: "row2" }, field("refraction", "mm", true, 12), field("camera", "mm")),
+      h("label", { class: "check" }, compensate, t("order.compensate")),
+      h("p", { class: "hint" }, t("order.wearHint"))),
     filesCard(store, () => showOrder()),
   );
   wide.addEventListener("change", () => {
@@ -228,7 +240,7 @@ export function orderForm(store: Store): HTMLElement {
 
   function showDesign(): void {
     const { order } = store;
-    corridor.hidden = order.design !== "progressive";
+    corridor.hidden = order.design !== "progressive" && order.design !== "soft";
     designHint.hidden = order.design === "single" || EYES.some((eye) => order[eye].add > 0);
   }
   function showOrder(): void {
@@ -238,19 +250,22 @@ export function orderForm(store: Store): HTMLElement {
     medium.value = order.medium;
     design.value = order.design;
     coat.value = order.coat;
+    compensate.checked = order.compensate;
     showDesign();
     shape.value = order.trace ? "traced" : order.shape;
     (shape.lastElementChild as HTMLOptionElement).disabled = !order.trace;
   }
   showOrder();
   store.onReplaced(showOrder);
-  store.onLenses(({ sheet }) => {
+  store.onLenses(({ order, sheet }) => {
     showDesign();
     plain.base?.setPlaceholder(fixed(sheet.right.front_power_D[0], 2));
     plain.centre?.setPlaceholder(fixed(sheet.right.center_thickness_mm, 1));
+    plain.refraction?.setPlaceholder(fixed(order.vertex, 1));
   });
   store.onProblem((p) => {
     problem.hidden = p === null;
+    for (const eye of EYES) eyes[eye].setImpossible(p?.eye === eye);
     if (!p) return;
     problem.replaceChildren(
       h("strong", {}, t("error.impossible", { eye: t(`eye.${p.eye}` as TextKey) })),

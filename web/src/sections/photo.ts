@@ -104,6 +104,6 @@ export function photoMarks(onPhoto: (photo: PhotoMarks | null) => void): HTMLEle
 
   return h("div", { class: "photo" },
     h("div", { class: "buttons" },
-      h("label", { class: "quiet as-button", for: id }, t("photo.choose")), input, forget, status),
+      input, h("label", { class: "quiet as-button", for: id }, t("photo.choose")), forget, status),
     stage);
 }

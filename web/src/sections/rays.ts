@@ -1,18 +1,19 @@
 // SPDX-License-Identifier: Apache-2.0
 // Object, lens, eye: exact rays that bend as the order changes, for the wearer and for an observer.
 
-import { SLOT, type FanRay } from "../app/engine";
+import { SLOT, type FanRay, type Sheet, type Worn } from "../app/engine";
 import { fixed } from "../app/format";
 import { contourOf, reach } from "../app/frames";
-import { IRIS_RADIUS_MM, type Order } from "../app/order";
+import { PUPIL_DEPTH_MM } from "../app/eye_picture";
+import { IRIS_RADIUS_MM, meridiansOf, type Order } from "../app/order";
 import type { Store } from "../app/store";
 import { t, type TextKey } from "../app/texts";
 import { view } from "../app/view";
+import { direct, straight } from "../app/worn";
 import { h, s, setText, uniqueId } from "../ui/dom";
 import { eyeSwitch } from "../ui/eye_switch";
 
 const EYE_RADIUS_MM = 12;
-const PUPIL_BEHIND_CORNEA_MM = 3.05;
 const FAN = 9;
 const BODY_POINTS = 60;
 const OBSERVER_FAN = 401;
@@ -51,7 +52,8 @@ export function raysSection(store: Store, wanted: () => boolean): HTMLElement {
     v === 0 ? "∞" : `${fixed(-1000 / v, 0)} mm`);
   const field = slider("field", -30, 30, 1, 0, (v) => `${fixed(v, 0)}°`);
   const meridian = h("select", { id: uniqueId("meridian"), onchange: () => draw() },
-    h("option", { value: "0" }, t("why.along")), h("option", { value: "1" }, t("why.across")));
+    ...(["along", "across"] as const).map((m) => h("option", { value: m }, t(`why.${m}`))),
+    ...(["vertical", "horizontal"] as const).map((m) => h("option", { value: m }, t(`rays.${m}`))));
   const name = uniqueId("rays-mode");
   const modes = (["wearer", "far", "observer"] as Mode[]).map((m) =>
     h("label", {}, h("input", { type: "radio", name, value: m, checked: m === mode, onchange: () => {
@@ -66,10 +68,14 @@ export function raysSection(store: Store, wanted: () => boolean): HTMLElement {
       ...modes),
     drawing, told, controls, h("p", { class: "hint" }, t("rays.hint")));
 
-  function meridianDegrees(order: Order): number {
-    const rx = order[view.eye];
-    const axis = rx.cylinder === 0 ? 180 : (rx.axis ?? 180) || 180;
-    return meridian.value === "0" ? axis : axis > 90 ? axis - 90 : axis + 90;
+  // The meridian shown, and its place in pairs of the sheet; null where it is no principal one.
+  function meridianShown(sheet: Sheet): { degrees: number; which: 0 | 1 | null } {
+    const [along, across] = meridiansOf(sheet);
+    if (meridian.value === "along") return { degrees: along, which: 0 };
+    if (meridian.value === "across") return { degrees: across, which: 1 };
+    const degrees = meridian.value === "vertical" ? 90 : 180;
+    const round = Math.abs(sheet.made.cylinder) < 1e-9;
+    return { degrees, which: round || degrees === along ? 0 : degrees === across ? 1 : null };
   }
 
   function draw(): void {
@@ -78,14 +84,14 @@ export function raysSection(store: Store, wanted: () => boolean): HTMLElement {
     const { eye } = view;
     const slot = SLOT[eye];
     const sheet = sheets[eye];
-    const which = meridian.value === "0" ? 0 : 1;
-    const degrees = meridianDegrees(order);
+    const { degrees, which } = meridianShown(sheet);
+    const worn = engine.worn(slot);
     const a = (degrees * Math.PI) / 180;
     const [ux, uy] = [-Math.cos(a), Math.sin(a)];
     const [low, high] = reach(contourOf(order, eye), ux, uy);
     const thick = sheet.center_thickness_mm;
     const cornea = thick + order.vertex;
-    const cardinal = sheet.cardinal[which];
+    const cardinal = which === null ? null : sheet.cardinal[which];
     const focus = cardinal?.back_focal_mm ?? null; // from the back vertex
     controls.classList.toggle("observing", mode === "observer");
 
@@ -109,15 +115,22 @@ export function raysSection(store: Store, wanted: () => boolean): HTMLElement {
 
     line([[0, frame.z0], [0, frame.z1]], "axis");
     drawEyeball(parts, x, y, cornea);
-    drawBody(parts, at, slot, low, high, ux, uy);
+    drawBody(parts, at, slot, worn, low, high, ux, uy);
+    // Points of the lens's own axis, (height, z) in the drawing.
+    const onAxis = (z: number): [number, number] => {
+      const [px, py, pz] = straight(worn, [0, 0, z]);
+      return [px * ux + py * uy, pz];
+    };
+    if (onAxis(-1)[0] !== 0) line([onAxis(frame.z0), onAxis(frame.z1)], "axis");
 
     if (mode === "observer") drawObserver(slot, degrees, cornea, order, line, label);
     else drawFan(slot, degrees, low, high, frame, line);
 
     const mark = (z: number | null | undefined, text: string): void => {
       if (z === null || z === undefined || z < frame.z0 || z > frame.z1) return;
-      parts.push(s("circle", { class: "focal", cx: x(z), cy: y(0), r: 4 }));
-      label(-2.2, z, text);
+      const [height, along] = onAxis(z);
+      parts.push(s("circle", { class: "focal", cx: x(along), cy: y(height), r: 4 }));
+      label(height - 2.2, along, text);
     };
     mark(cardinal?.front_focal_mm, "F");
     mark(focus === null ? null : thick + focus, "F′");
@@ -125,8 +138,11 @@ export function raysSection(store: Store, wanted: () => boolean): HTMLElement {
       [cardinal?.front_principal_mm, "H", 1], [cardinal ? thick + (cardinal.back_principal_mm ?? 0) : null, "H′", -1],
     ] as const) {
       if (z === null || z === undefined || mode === "far" || Math.abs(z) > 40) continue;
-      line([[-5, z], [5, z]], "plane");
-      label(lift > 0 ? 5.6 : -6.6, z, text);
+      const [height, along] = onAxis(z);
+      const [tx, ty, tz] = direct(worn, [ux, uy, 0]);
+      const up = tx * ux + ty * uy;
+      line([[height - 5 * up, along - 5 * tz], [height + 5 * up, along + 5 * tz]], "plane");
+      label(height + (lift > 0 ? 5.6 : -6.6), along + (lift > 0 ? 5.6 : -6.6) * tz, text);
     }
     drawing.replaceChildren(...parts);
     drawing.setAttribute("aria-label", told.textContent ?? "");
@@ -151,7 +167,7 @@ export function raysSection(store: Store, wanted: () => boolean): HTMLElement {
         const inSlope = (ray.front[0] - ray.start[0]) / (ray.front[1] - ray.start[1]);
         // Rays that came from infinity go on to the drawing's edge.
         const startZ = object === 0 ? f.z0 : before;
-        const end = mode === "wearer" ? cornea + PUPIL_BEHIND_CORNEA_MM : f.z1;
+        const end = mode === "wearer" ? cornea + PUPIL_DEPTH_MM : f.z1;
         stroke([
           [ray.front[0] + inSlope * (startZ - ray.front[1]), startZ],
           ray.front,
@@ -160,7 +176,7 @@ export function raysSection(store: Store, wanted: () => boolean): HTMLElement {
         ], "ray");
         stroke([ray.back, [ray.back[0] + slope * (f.z0 - ray.back[1]), f.z0]], "ray back");
       }
-      const text = focus === null
+      const text = which === null ? t("rays.toldSkew") : focus === null
         ? t("rays.toldAfocal")
         : t(focus < 0 ? "rays.toldMinus" : "rays.toldPlus", { mm: fixed(Math.abs(focus), 0) });
       setText(told, text);
@@ -172,7 +188,7 @@ export function raysSection(store: Store, wanted: () => boolean): HTMLElement {
   ): void {
     const rx = x(cornea + EYE_RADIUS_MM) - x(cornea);
     const ry = y(0) - y(EYE_RADIUS_MM);
-    const iris = cornea + PUPIL_BEHIND_CORNEA_MM;
+    const iris = cornea + PUPIL_DEPTH_MM;
     parts.push(
       s("ellipse", { class: "eyeball", cx: x(cornea + EYE_RADIUS_MM), cy: y(0), rx, ry }),
       s("path", { class: "iris-line", d:
@@ -182,13 +198,17 @@ export function raysSection(store: Store, wanted: () => boolean): HTMLElement {
   }
 
   function drawBody(
-    parts: SVGElement[], at: (height: number, z: number) => string, slot: number,
+    parts: SVGElement[], at: (height: number, z: number) => string, slot: number, worn: Worn,
     low: number, high: number, ux: number, uy: number,
   ): void {
     const heights = Array.from({ length: BODY_POINTS + 1 }, (_, i) => low + ((high - low) * i) / BODY_POINTS);
     const z = store.engine.surfaces(slot, heights.flatMap((r) => [r * ux, r * uy]));
-    const front = heights.map((r, i) => at(r, z[2 * i]));
-    const back = heights.map((r, i) => at(r, z[2 * i + 1])).reverse();
+    const placed = (r: number, depth: number): string => {
+      const [px, py, pz] = straight(worn, [r * ux, r * uy, depth]);
+      return at(px * ux + py * uy, pz);
+    };
+    const front = heights.map((r, i) => placed(r, z[2 * i]));
+    const back = heights.map((r, i) => placed(r, z[2 * i + 1])).reverse();
     parts.push(s("path", { class: "lens-body", d: `M${front.join("L")}L${back.join("L")}Z` }));
   }
 
@@ -199,7 +219,7 @@ export function raysSection(store: Store, wanted: () => boolean): HTMLElement {
     label: (height: number, z: number, text: string, anchor?: string) => void,
   ): void {
     const rays = store.engine.fan(slot, degrees, 12, OBSERVER_FAN, 0, order.camera, 0);
-    const iris = cornea + PUPIL_BEHIND_CORNEA_MM;
+    const iris = cornea + PUPIL_DEPTH_MM;
     const heightAt = (ray: FanRay): number =>
       ray.back[0] + ((iris - ray.back[1]) * ray.direction[0]) / ray.direction[1];
     for (const target of [IRIS_RADIUS_MM, -IRIS_RADIUS_MM]) {
