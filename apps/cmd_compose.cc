@@ -8,6 +8,8 @@
 #include <ostream>
 
 #include "apps/commands.h"
+#include "apps/effect_options.h"
+#include "base/atomic_file.h"
 #include "render/compose.h"
 #include "render/image_io.h"
 
@@ -15,7 +17,9 @@ namespace lorgnette {
 namespace {
 
 struct ComposeCommandOptions {
-  std::string scene, output, hits;
+  std::string scene, output, hits, report;
+  bool caustics = false;
+  EffectOptions effects{.effects = "paper"};
 };
 
 Status CheckExr(const char* option, const std::string& path) {
@@ -26,10 +30,19 @@ Status CheckExr(const char* option, const std::string& path) {
 Status RunCompose(const ComposeCommandOptions& options, std::ostream& out) {
   LG_RETURN_IF_ERROR(CheckExr("--output", options.output));
   LG_RETURN_IF_ERROR(CheckExr("--hits", options.hits));
-  LG_ASSIGN(const ComposeOutput output, ComposeCaseFile(options.scene));
+  CompositorOptions probe;  // options are checked before anything is read
+  LG_ASSIGN(EffectChoice choice, ApplyEffectOptions(options.effects, probe));
+  if (options.caustics) choice.wish[std::size_t(Effect::kLensLight)] = EffectWish::kOn;
+  LG_ASSIGN(ComposeCase scene, ReadComposeCase(options.scene));
+  LG_RETURN_IF_ERROR(ApplyEffectOptions(options.effects, scene.options).map([](auto&&) {}));
+  LG_ASSIGN(const ComposeOutput output, Compose(scene, choice));
   LG_RETURN_IF_ERROR(WriteExr(output.picture, options.output, ExrDepth::kFloat));
   if (!options.hits.empty()) {
     LG_RETURN_IF_ERROR(WriteExr(output.hits, options.hits, ExrDepth::kFloat));
+  }
+  if (!options.report.empty()) {
+    LG_RETURN_IF_ERROR(WriteFileAtomically(
+        options.report, fmt::format("{{\n\"effects\": {}\n}}\n", EffectPlanJson(output.plan))));
   }
   out << fmt::format("{}: {}x{} pixels, {} on lenses, {} on the frame\n", options.output,
                      output.picture.width, output.picture.height, output.counts.lens_pixels,
@@ -48,6 +61,10 @@ void AddComposeCommand(CLI::App& program, CommandContext& context) {
       ->required();
   command.add_option("--hits", options->hits,
                      "Also write what the ray of every pixel reaches (EXR, R G B: mm, A: code)");
+  command.add_flag("--caustics", options->caustics,
+                   "Light the skin through the lenses, too (the effect lens-light)");
+  command.add_option("--report", options->report, "Write the effects and their estimates (JSON)");
+  AddEffectOptions(command, options->effects);
   command.footer(
       "Examples:\n"
       "  lorgnette compose scene.json -o picture.exr\n"

@@ -8,6 +8,7 @@
 #include <ostream>
 
 #include "apps/commands.h"
+#include "apps/effect_options.h"
 #include "apps/lens_options.h"
 #include "apps/tryon_pipeline.h"
 
@@ -19,6 +20,7 @@ struct TryonCommandOptions {
   std::string frames;
   std::string shadow = "baked";
   bool no_refraction = false, no_reflection = false, no_shadow = false;
+  EffectOptions effects;
   std::vector<double> nudge;
   std::string medium = "CR-39";
   std::optional<double> index;
@@ -55,8 +57,17 @@ Status RunTryonCommand(TryonCommandOptions options, std::ostream& out) {
                                   kMaxSamplesPerSide));
   }
   LG_ASSIGN(request.eyewear.medium, MediumFromOptions(options.medium, options.index, std::nullopt));
-  compositor.refraction = !options.no_refraction;
-  compositor.reflection = !options.no_reflection;
+  LG_ASSIGN(request.effects, ApplyEffectOptions(options.effects, compositor));
+  const auto without = [&](Effect effect) {
+    request.effects.wish[std::size_t(effect)] = EffectWish::kOff;
+  };
+  if (options.no_refraction) without(Effect::kRefraction);
+  if (options.no_reflection) {
+    for (const Effect effect :
+         {Effect::kFrontReflection, Effect::kBackReflection, Effect::kRings, Effect::kBounces}) {
+      without(effect);
+    }
+  }
   compositor.shadow = options.no_shadow           ? ShadowMode::kNone
                       : options.shadow == "paper" ? ShadowMode::kPaper
                                                   : ShadowMode::kBaked;
@@ -91,6 +102,7 @@ void AddTryonCommand(CLI::App& program, CommandContext& context) {
       ->check(CLI::Range(0, 1000));
   command.add_flag("--beside", request.stills_beside_input, "Stills show the input at the left");
   command.add_option("--report", request.report, "Write a report (JSON)");
+  AddEffectOptions(command, options->effects);
   command.add_flag("--no-refraction", options->no_refraction, "Leave out refraction");
   command.add_flag("--no-reflection", options->no_reflection, "Leave out reflection");
   command.add_flag("--no-shadow", options->no_shadow, "Leave out the shadow");

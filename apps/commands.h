@@ -24,6 +24,7 @@ void AddLensCommand(CLI::App& program, CommandContext& context);
 void AddMeasureCommand(CLI::App& program, CommandContext& context);
 void AddFramesCommand(CLI::App& program, CommandContext& context);
 void AddComposeCommand(CLI::App& program, CommandContext& context);
+void AddProbeCommand(CLI::App& program, CommandContext& context);
 void AddValidateCommand(CLI::App& program, CommandContext& context);
 void AddServeCommand(CLI::App& program, CommandContext& context);
 

@@ -46,6 +46,7 @@ int RunProgram(int argc, const char* const* argv, std::ostream& out, std::ostrea
   AddMeasureCommand(program, context);
   AddFramesCommand(program, context);
   AddComposeCommand(program, context);
+  AddProbeCommand(program, context);
   AddValidateCommand(program, context);
   AddServeCommand(program, context);
 

@@ -238,16 +238,27 @@ class Assembly {
       result_.environment_scale =
           compositor_.MatchExposure(input, track_.camera, job.tracked->camera_from_head);
       compositor_.SetEnvironmentScale(result_.environment_scale);
+      compositor_.SetCameraLook(MeasureCameraLook(input));
       exposed_ = true;
     }
+    const EffectPlan plan =
+        compositor_.Plan(input, track_.camera, job.tracked->camera_from_head, request_.effects);
+    CountEffects(plan);
     RenderCounts counts;
-    const ImageRgbF output =
-        compositor_.Render(input, track_.camera, job.tracked->camera_from_head, &counts);
+    const ImageRgbF output = compositor_.Render(input, track_.camera, job.tracked->camera_from_head,
+                                                &counts, &plan.effects);
     result_.counts.lens_pixels += counts.lens_pixels;
     result_.counts.frame_pixels += counts.frame_pixels;
     result_.counts.shadowed_pixels += counts.shadowed_pixels;
     result_.counts.filled_samples += counts.filled_samples;
     job.frame.rgb = DisplayFromLinear(output);
+  }
+
+  void CountEffects(const EffectPlan& plan) {
+    if (result_.first_plan.decisions.empty()) result_.first_plan = plan;
+    for (const EffectDecision& d : plan.decisions) {
+      result_.effect_frames[std::size_t(d.region)][std::size_t(d.effect)] += d.on;
+    }
   }
 
   void Write(Job& job) {

@@ -4,6 +4,7 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <array>
 #include <optional>
 #include <string>
 #include <vector>
@@ -29,6 +30,7 @@ struct TryonRequest {
   int stills = 0;
   bool stills_beside_input = false;
   CompositorOptions compositor;
+  EffectChoice effects;  // decided for every frame
   FitOptions fit;
   EyewearOptions eyewear;
 };
@@ -63,6 +65,8 @@ struct TryonResult {
   std::optional<Eyewear> eyewear;                   // always there in a result
   double pad_shift_mm = 0, temple_opening_deg = 0;  // adjustments of the frame
   RenderCounts counts;                              // sums over the frames
+  EffectPlan first_plan;                            // of the first frame with a face
+  std::array<std::array<long, kEffectCount>, 3> effect_frames{};  // by region: drawn in how many
   std::vector<std::string> stills, warnings;
   StageSeconds seconds;
 };

@@ -60,13 +60,22 @@ Json VideoJson(const TryonResult& r) {
           {"stills", r.stills}};
 }
 
+// The first frame's plan, and in how many frames each effect was drawn.
+Json EffectsJson(const TryonResult& r) {
+  Json list = Json::parse(EffectPlanJson(r.first_plan));
+  for (std::size_t i = 0; i < list.size(); ++i) {
+    const EffectDecision& d = r.first_plan.decisions[i];
+    list[i]["frames_on"] = r.effect_frames[std::size_t(d.region)][std::size_t(d.effect)];
+  }
+  return list;
+}
+
 Json RenderJson(const TryonResult& r) {
   const CompositorOptions& o = r.request.compositor;
   const char* shadow = o.shadow == ShadowMode::kNone    ? "none"
                        : o.shadow == ShadowMode::kPaper ? "paper"
                                                         : "baked";
-  return {{"refraction", o.refraction},
-          {"reflection", o.reflection},
+  return {{"effects", EffectsJson(r)},
           {"shadow", shadow},
           {"samples_per_pixel", o.samples_per_side * o.samples_per_side},
           {"environment", r.environment},

@@ -2,9 +2,7 @@
 #include <tbb/parallel_for.h>
 
 #include <algorithm>
-#include <cmath>
 #include <limits>
-#include <unordered_set>
 
 #include "base/units.h"
 #include "render/lighting.h"
@@ -13,43 +11,10 @@
 namespace lorgnette {
 namespace {
 
-constexpr double kNear_mm = 6;  // contact shadows are sharper than the far lattice up to here
 constexpr int kOpenDirections = 256;
-constexpr int kMaxCells = 24;  // along a triangle's side
 constexpr float kFrameLift_mm = 0.02f;
 // Smooth normals rise above the flat triangles; rays against the face start this far off it.
 constexpr float kFaceLift_mm = 0.3f;
-
-// Cubes of side kNear_mm that hold a vertex of the frame, or neighbour one that does.
-class NearFrame {
- public:
-  explicit NearFrame(const TriangleMesh& frame) {
-    for (const Eigen::Vector3d& p : frame.positions) {
-      const Eigen::Vector3i c = Cell(p);
-      for (int dz = -1; dz <= 1; ++dz) {
-        for (int dy = -1; dy <= 1; ++dy) {
-          for (int dx = -1; dx <= 1; ++dx) cells_.insert(Key(c + Eigen::Vector3i(dx, dy, dz)));
-        }
-      }
-    }
-  }
-  bool Contains(const Eigen::Vector3d& p) const { return cells_.contains(Key(Cell(p))); }
-
- private:
-  static Eigen::Vector3i Cell(const Eigen::Vector3d& p) {
-    return (p / kNear_mm).array().floor().cast<int>();
-  }
-  static std::int64_t Key(const Eigen::Vector3i& c) {
-    constexpr std::int64_t kBias = 1 << 20;
-    return ((c.x() + kBias) << 42) | ((c.y() + kBias) << 21) | (c.z() + kBias);
-  }
-  std::unordered_set<std::int64_t> cells_;
-};
-
-struct LatticeCorner {
-  std::uint32_t triangle;
-  float u, v;
-};
 
 }  // namespace
 
@@ -62,40 +27,8 @@ float WeightOfOpenShare(float open_share) {
 BakedShadow BakedShadow::Bake(const EmbreeScene& scene, const TriangleMesh& face,
                               const TriangleMesh& frame, const ShadowOptions& options) {
   BakedShadow baked;
-  const NearFrame near_frame(frame);
-  std::vector<LatticeCorner> points;
-  // Points at the mesh's own vertices are shared by its triangles.
-  constexpr std::uint32_t kUnset = ~0u;
-  std::vector<std::uint32_t> vertex_point(face.positions.size(), kUnset);
-  for (std::size_t t = 0; t < face.triangles.size(); ++t) {
-    const Eigen::Vector3i& triangle = face.triangles[t];
-    const Eigen::Vector3d corners[3] = {face.positions[std::size_t(triangle[0])],
-                                        face.positions[std::size_t(triangle[1])],
-                                        face.positions[std::size_t(triangle[2])]};
-    const double side =
-        std::max({(corners[0] - corners[1]).norm(), (corners[1] - corners[2]).norm(),
-                  (corners[2] - corners[0]).norm()});
-    const bool near = near_frame.Contains((corners[0] + corners[1] + corners[2]) / 3) ||
-                      near_frame.Contains(corners[0]) || near_frame.Contains(corners[1]) ||
-                      near_frame.Contains(corners[2]);
-    const double spacing = near ? options.spacing_near_mm : options.spacing_far_mm;
-    const int cells = std::clamp(int(std::ceil(side / spacing)), 1, kMaxCells);
-    baked.lattices_.push_back({std::uint32_t(baked.corners_.size()), std::uint16_t(cells), false});
-    for (int j = 0; j <= cells; ++j) {
-      for (int i = 0; i + j <= cells; ++i) {
-        const int corner = i == cells ? 1 : j == cells ? 2 : i + j == 0 ? 0 : -1;
-        std::uint32_t* shared = corner < 0 ? nullptr : &vertex_point[std::size_t(triangle[corner])];
-        if (shared != nullptr && *shared != kUnset) {
-          baked.corners_.push_back(*shared);
-          continue;
-        }
-        if (shared != nullptr) *shared = std::uint32_t(points.size());
-        baked.corners_.push_back(std::uint32_t(points.size()));
-        points.push_back({std::uint32_t(t), float(i) / float(cells), float(j) / float(cells)});
-      }
-    }
-  }
-  baked.point_count_ = points.size();
+  baked.lattice_ = FaceLattice(face, frame, options.spacing_near_mm, options.spacing_far_mm);
+  const std::vector<LatticePoint>& points = baked.lattice_.points();
 
   baked.BakeOpenLight(scene, face, options);
 
@@ -103,15 +36,8 @@ BakedShadow BakedShadow::Bake(const EmbreeScene& scene, const TriangleMesh& face
   std::vector<std::vector<Blocked>> results(points.size());
   std::vector<std::uint8_t> buried(points.size(), 0);  // no way out past the frame
   tbb::parallel_for(std::size_t(0), points.size(), [&](std::size_t i) {
-    const LatticeCorner& at = points[i];
-    const Eigen::Vector3i& triangle = face.triangles[at.triangle];
-    const float w[3] = {1 - at.u - at.v, at.u, at.v};
-    Eigen::Vector3f position = Eigen::Vector3f::Zero(), normal = Eigen::Vector3f::Zero();
-    for (int k = 0; k < 3; ++k) {
-      position += w[k] * face.positions[std::size_t(triangle[k])].cast<float>();
-      normal += w[k] * face.normals[std::size_t(triangle[k])].cast<float>();
-    }
-    normal.normalize();
+    const LatticePoint& at = points[i];
+    const Eigen::Vector3f &position = at.position, &normal = at.normal;
     std::vector<Blocked>& blocked = results[i];
     std::size_t above = 0;
     ForHemispherePackets(sphere, position + kFrameLift_mm * normal, normal,
@@ -139,12 +65,7 @@ BakedShadow BakedShadow::Bake(const EmbreeScene& scene, const TriangleMesh& face
                               points[i].u, points[i].v, bool(buried[i])});
     baked.blocked_.insert(baked.blocked_.end(), results[i].begin(), results[i].end());
   }
-  for (Lattice& lattice : baked.lattices_) {
-    const std::uint32_t n = (lattice.cells + 1u) * (lattice.cells + 2u) / 2;
-    for (std::uint32_t k = 0; k < n; ++k) {
-      lattice.touched = lattice.touched || is_touched[baked.corners_[lattice.first + k]];
-    }
-  }
+  baked.lattice_.Touch(is_touched);
   return baked;
 }
 
@@ -225,11 +146,11 @@ std::vector<Eigen::Vector3f> BakedShadow::Relight(const HeadLight& light) const 
     const float whole = std::max(open, lost);
     return whole > 0 ? 1 - lost / whole : 1.0f;
   };
-  std::vector<Eigen::Vector3f> ratios(point_count_, Eigen::Vector3f::Ones());
+  std::vector<Eigen::Vector3f> ratios(lattice_.points().size(), Eigen::Vector3f::Ones());
   tbb::parallel_for(std::size_t(0), touched_.size(), [&](std::size_t i) {
     const Touched& point = touched_[i];
     if (point.buried) {
-      ratios[point.point].setConstant(kBuried);
+      ratios[point.point].setConstant(FaceLattice::kNoValue);
       return;
     }
     Eigen::Vector3f lost_seen = Eigen::Vector3f::Zero(), lost_hidden = Eigen::Vector3f::Zero();
@@ -253,38 +174,6 @@ std::vector<Eigen::Vector3f> BakedShadow::Relight(const HeadLight& light) const 
     }
   });
   return ratios;
-}
-
-Eigen::Vector3f BakedShadow::Ratio(const std::vector<Eigen::Vector3f>& relit,
-                                   std::uint32_t triangle, float u, float v) const {
-  const Lattice& lattice = lattices_[triangle];
-  if (!lattice.touched) return Eigen::Vector3f::Ones();
-  const int cells = lattice.cells;
-  const float x = std::clamp(u, 0.0f, 1.0f) * float(cells);
-  const float y = std::clamp(v, 0.0f, 1.0f) * float(cells);
-  const int j = std::min(int(y), cells - 1);
-  const int i = std::min(int(x), cells - 1 - j);
-  const float fx = std::clamp(x - float(i), 0.0f, 1.0f), fy = std::clamp(y - float(j), 0.0f, 1.0f);
-  Eigen::Vector3f sum = Eigen::Vector3f::Zero();
-  float weight = 0;
-  const auto add = [&](float w, int column, int row) {
-    const int index = row * (cells + 1) - row * (row - 1) / 2 + column;
-    const Eigen::Vector3f& ratio = relit[corners_[lattice.first + std::size_t(index)]];
-    if (ratio.x() == kBuried) return;
-    sum += w * ratio;
-    weight += w;
-  };
-  if (fx + fy <= 1 || i + j + 2 > cells) {
-    add(std::max(1 - fx - fy, 0.0f), i, j);
-    add(fx, i + 1, j);
-    add(fy, i, j + 1);
-  } else {
-    add(fx + fy - 1, i + 1, j + 1);
-    add(1 - fx, i, j + 1);
-    add(1 - fy, i + 1, j);
-  }
-  constexpr float kLeastWeight = 1e-3f;
-  return weight > kLeastWeight ? Eigen::Vector3f(sum / weight) : Eigen::Vector3f::Ones();
 }
 
 }  // namespace lorgnette

@@ -189,11 +189,12 @@ Result<ComposeCase> ReadComposeCase(const std::string& path) {
   }
   CompositorOptions options;
   options.samples_per_side = 4;
+  options.shadow = ShadowMode::kGathered;
   options.shadow_directions = 2048;
   options.shadow_spacing_mm = 0.75;
   options.max_internal_bounces = 12;
   options.least_weight = 0.001;
-  options.edge = EdgeFinish::kPolished;
+  options.finish.edge = EdgeFinish::kPolished;
   options.fade_temples = false;
   options.world_from_camera = camera_from_world.rotation().transpose();
   if (json.Has("background")) {
@@ -241,20 +242,16 @@ Result<ComposeCase> ReadComposeCase(const std::string& path) {
                      options};
 }
 
-Result<ComposeOutput> Compose(const ComposeCase& scene) {
+Result<ComposeOutput> Compose(const ComposeCase& scene, const EffectChoice& choice) {
   LG_ASSIGN(const Compositor compositor,
             Compositor::Create(scene.eyewear, scene.head, TriangleMesh{}, scene.environment,
                                scene.options));
   ComposeOutput output;
-  output.picture =
-      compositor.Render(scene.input, scene.camera, scene.camera_from_head, &output.counts);
+  output.plan = compositor.Plan(scene.input, scene.camera, scene.camera_from_head, choice);
+  output.picture = compositor.Render(scene.input, scene.camera, scene.camera_from_head,
+                                     &output.counts, &output.plan.effects);
   output.hits = compositor.HitMap(scene.camera, scene.camera_from_head);
   return output;
-}
-
-Result<ComposeOutput> ComposeCaseFile(const std::string& path) {
-  LG_ASSIGN(const ComposeCase scene, ReadComposeCase(path));
-  return Compose(scene);
 }
 
 }  // namespace lorgnette

@@ -40,9 +40,9 @@ struct ComposeOutput {
   ImageRgbF picture;  // linear light, the input's size
   ImageRgbaF hits;    // Compositor::HitMap
   RenderCounts counts;
+  EffectPlan plan;
 };
 // Reads the case, renders it, and traces the hit map.
-Result<ComposeOutput> Compose(const ComposeCase& scene);
-Result<ComposeOutput> ComposeCaseFile(const std::string& path);
+Result<ComposeOutput> Compose(const ComposeCase& scene, const EffectChoice& choice);
 
 }  // namespace lorgnette

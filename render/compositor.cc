@@ -19,6 +19,10 @@ namespace lorgnette {
 namespace {
 
 constexpr float kInfinity = std::numeric_limits<float>::infinity();
+// Dominant wavelengths of the Rec.709 primaries (their chromaticities against D65's), and the width
+// of a channel's band when it takes several.
+constexpr double kChannel_nm[3] = {611.4, 549.1, 464.2};
+constexpr double kBand_nm = 50;
 
 // First glass on a ray of head space.
 struct Entry {
@@ -41,12 +45,14 @@ std::optional<Entry> FirstGlass(const HeadScene& head, const Ray& ray) {
 struct PixelSum {
   Eigen::Vector3f inserted{0, 0, 0}, direct{0, 0, 0};
   bool lens = false, frame = false, changed = false;
+  float frame_share = 0;
 
   void Add(const CameraSample& s, float share) {
     using Kind = CameraSample::Kind;
     const bool through = s.kind == Kind::kLensToHead || s.kind == Kind::kLensElsewhere;
     lens |= through;
     frame |= s.kind == Kind::kFrame;
+    if (s.kind == Kind::kFrame) frame_share += share * (1 - s.direct.maxCoeff());
     changed |= through || s.kind == Kind::kFrame || (s.direct.array() != 1.0f).any();
     inserted += share * s.inserted;
     direct += share * s.direct;
@@ -130,17 +136,74 @@ void Compositor::UpdateFace(const std::vector<Eigen::Vector3f>& vertices) {
   head.scene.MoveFace(vertices);
 }
 
+void Compositor::SetCameraLook(const CameraLook& look) { scene_->head.options.camera_look = look; }
+
 void Compositor::SetEnvironmentScale(double scale) {
   scene_->head.options.environment_scale = scale;
 }
 
 ImageRgbF Compositor::Render(const ImageRgbF& input, const Camera& camera,
-                             const Eigen::Isometry3d& camera_from_head,
-                             RenderCounts* counts) const {
+                             const Eigen::Isometry3d& camera_from_head, RenderCounts* counts,
+                             const PictureEffects* effects) const {
   LG_CHECK_EQ(input.width, camera.width);
   LG_CHECK_EQ(input.height, camera.height);
+  const CompositorOptions& options = scene_->head.options;
+  const PictureEffects drawn = effects != nullptr ? *effects : PictureEffects::Of(options.effects);
+  const bool match = drawn.rest[Effect::kGrain];
+  std::vector<float> frame_share;
+  if (match) frame_share.assign(input.data.size() / 3, 0);
+  ImageRgbF output;
+  if (drawn.Any(Effect::kDispersion)) {
+    output =
+        RenderBands(input, camera, camera_from_head, drawn, counts, match ? &frame_share : nullptr);
+  } else {
+    output = RenderPass(input, camera, camera_from_head, drawn, std::nullopt, counts,
+                        match ? &frame_share : nullptr);
+  }
+  if (match) {
+    // A seed of the pose: another frame has other grain, another run the same.
+    std::uint32_t seed = 2166136261u;
+    for (const double v : camera_from_head.matrix().reshaped()) {
+      seed = (seed ^ std::uint32_t(std::int64_t(v * 1e6))) * 16777619u;
+    }
+    ApplyCameraLook(options.camera_look, frame_share, seed, output);
+  }
+  return output;
+}
+
+// One picture a wavelength; a channel is the mean of those in its own band.
+ImageRgbF Compositor::RenderBands(const ImageRgbF& input, const Camera& camera,
+                                  const Eigen::Isometry3d& camera_from_head,
+                                  const PictureEffects& effects, RenderCounts* counts,
+                                  std::vector<float>* frame_share) const {
+  ImageRgbF output(input.width, input.height);
+  std::vector<bool> changed(output.data.size(), false);
+  const int bands = scene_->head.options.wavelengths / 3;
+  for (int c = 0; c < 3; ++c) {
+    for (int k = 0; k < bands; ++k) {
+      const double at_nm = kChannel_nm[c] + kBand_nm * ((k + 0.5) / bands - 0.5);
+      const bool middle = c == 1 && k == bands / 2;
+      const ImageRgbF pass = RenderPass(input, camera, camera_from_head, effects, at_nm,
+                                        middle ? counts : nullptr, middle ? frame_share : nullptr);
+      for (std::size_t i = std::size_t(c); i < output.data.size(); i += 3) {
+        changed[i] = changed[i] || pass.data[i] != input.data[i];
+        output.data[i] += pass.data[i];
+      }
+    }
+  }
+  for (std::size_t i = 0; i < output.data.size(); ++i) {
+    output.data[i] = changed[i] ? output.data[i] / float(bands) : input.data[i];
+  }
+  return output;
+}
+
+ImageRgbF Compositor::RenderPass(const ImageRgbF& input, const Camera& camera,
+                                 const Eigen::Isometry3d& camera_from_head,
+                                 const PictureEffects& effects, std::optional<double> wavelength_nm,
+                                 RenderCounts* counts,
+                                 std::vector<float>* frame_share) const {
   const HeadScene& head = scene_->head;
-  const RayFollower follower(head, input, camera, camera_from_head);
+  const RayFollower follower(head, input, camera, camera_from_head, effects, wavelength_nm);
   const TileRenderer renderer(head, follower, camera, camera_from_head);
   const TileMask mask = MarkTiles(head, camera, camera_from_head);
   const int side = head.options.samples_per_side;
@@ -192,6 +255,10 @@ ImageRgbF Compositor::Render(const ImageRgbF& input, const Camera& camera,
           count.shadowed_pixels += sum.changed && !sum.lens && !sum.frame;
         }
         count.filled_samples += states[pixel].filled;
+        if (frame_share != nullptr) {
+          (*frame_share)[std::size_t(y) * std::size_t(input.width) + std::size_t(x)] =
+              sum.frame_share;
+        }
         float* out = output.at(x, y);
         const float* own = input.at(x, y);
         for (int c = 0; c < 3; ++c) {
@@ -221,6 +288,15 @@ ImageRgbF Compositor::Render(const ImageRgbF& input, const Camera& camera,
     }
   }
   return output;
+}
+
+EffectPlan Compositor::Plan(const ImageRgbF& input, const Camera& camera,
+                            const Eigen::Isometry3d& camera_from_head,
+                            const EffectChoice& choice) const {
+  // The follower only lends its view of the picture: no shadow is lit for it.
+  const RayFollower follower(scene_->head, input, camera, camera_from_head,
+                             PictureEffects::Of(EffectSet::None()));
+  return PlanEffects(scene_->head, follower, input, camera, camera_from_head, choice);
 }
 
 ImageRgbaF Compositor::HitMap(const Camera& camera,

@@ -13,7 +13,10 @@
 #include "base/mesh.h"
 #include "base/result.h"
 #include "geometry/eyewear.h"
+#include "render/effect_plan.h"
 #include "render/environment.h"
+#include "render/grain.h"
+#include "render/lens_finish.h"
 
 namespace lorgnette {
 
@@ -21,17 +24,14 @@ enum class ShadowMode {
   kNone,
   kPaper,  // Algorithm 1: stratified hemisphere rays at every shaded pixel
   kBaked,  // the same integral from visibility baked per point of the face
-};
-
-// What a ray inside the glass finds at the edge wall.
-enum class EdgeFinish {
-  kPolished,  // a smooth dielectric: internal reflection goes on
-  kGround,    // a matt, whitish wall lit by the mean of the environment
+  // Every direction of every point at this pose, with the light between skin and skin and, as an
+  // effect, through the lenses: for stills.
+  kGathered,
 };
 
 struct CompositorOptions {
-  bool refraction = true;
-  bool reflection = true;  // Fresnel: front and back surface, internal bounces
+  EffectSet effects = EffectSet::Paper();  // what Render draws unless it is told otherwise
+  int wavelengths = 3;                     // of dispersion; a multiple of 3
   ShadowMode shadow = ShadowMode::kBaked;
   bool shadow_sees_face = true;    // S_noGlasses with the face as an occluder (section V-B) or not
   int shadow_rays = 160;           // a pixel in paper mode (4 x 40 strata)
@@ -43,13 +43,14 @@ struct CompositorOptions {
   // A branch of the ray tree that carries less of its pixel is not followed: the third reflection
   // of uncoated glass carries 0.003.
   double least_weight = 0.004;
-  EdgeFinish edge = EdgeFinish::kGround;
+  LensFinish finish;                    // coats, tint, edge
   bool fade_temples = true;             // the paper's feathering toward the ears
   double background_distance_mm = 800;  // of what lies behind the head, from the head's origin
   // Camera z of the background plane; given, it goes before background_distance_mm.
   std::optional<double> background_depth_mm;
   // Turns camera directions into those of the environment; the default has y up, z to the camera.
   Eigen::Matrix3d world_from_camera = Eigen::Vector3d(1, -1, -1).asDiagonal();
+  CameraLook camera_look;        // of the video, for the effect kGrain
   double environment_scale = 1;  // radiance of the input image's 1.0 in units of the environment
 };
 
@@ -87,8 +88,14 @@ class Compositor {
 
   // input and the result: linear light, the camera's size. Pixels where nothing is inserted are
   // the input's, bit for bit; the result does not depend on the number of threads.
+  //   effects  of this picture, in place of the options' set
   ImageRgbF Render(const ImageRgbF& input, const Camera& camera,
-                   const Eigen::Isometry3d& camera_from_head, RenderCounts* counts = nullptr) const;
+                   const Eigen::Isometry3d& camera_from_head, RenderCounts* counts = nullptr,
+                   const PictureEffects* effects = nullptr) const;
+
+  // What this picture needs, by estimate and by wish (render/effect_plan.h).
+  EffectPlan Plan(const ImageRgbF& input, const Camera& camera,
+                  const Eigen::Isometry3d& camera_from_head, const EffectChoice& choice) const;
 
   // What the ray through every pixel's centre reaches: R, G, B the head-space point in mm where it
   // met the head through a lens by refraction at both surfaces, 0 elsewhere; A a HitCode.
@@ -98,9 +105,17 @@ class Compositor {
   double MatchExposure(const ImageRgbF& input, const Camera& camera,
                        const Eigen::Isometry3d& camera_from_head) const;
   void SetEnvironmentScale(double scale);
+  void SetCameraLook(const CameraLook& look);
 
  private:
   struct Scene;
+  ImageRgbF RenderPass(const ImageRgbF& input, const Camera& camera,
+                       const Eigen::Isometry3d& camera_from_head, const PictureEffects& effects,
+                       std::optional<double> wavelength_nm, RenderCounts* counts,
+                       std::vector<float>* frame_share) const;
+  ImageRgbF RenderBands(const ImageRgbF& input, const Camera& camera,
+                        const Eigen::Isometry3d& camera_from_head, const PictureEffects& effects,
+                        RenderCounts* counts, std::vector<float>* frame_share) const;
   explicit Compositor(std::unique_ptr<Scene> scene);
   std::unique_ptr<Scene> scene_;
 };

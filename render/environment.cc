@@ -106,4 +106,50 @@ Eigen::Vector3f Environment::Mean() const {
   return (sum / weight).cast<float>();
 }
 
+BrightestLight::BrightestLight(const Environment& environment) {
+  const ImageRgbF& map = environment.map();
+  std::vector<Eigen::Vector3f> own(std::size_t(kColumns) * kRows, Eigen::Vector3f::Zero());
+  // Every cell holds the texels that reach into it, and one more all around: radiance is bilinear.
+  for (int row = 0; row < kRows; ++row) {
+    const int y0 = std::max(0, row * map.height / kRows - 1);
+    const int y1 = std::min(map.height - 1, (row + 1) * map.height / kRows + 1);
+    for (int column = 0; column < kColumns; ++column) {
+      Eigen::Vector3f& most = own[std::size_t(row * kColumns + column)];
+      const int x0 = column * map.width / kColumns - 1;
+      const int x1 = (column + 1) * map.width / kColumns + 1;
+      for (int y = y0; y <= y1; ++y) {
+        for (int x = x0; x <= x1; ++x) {
+          const int wrapped = (x % map.width + map.width) % map.width;
+          most = most.cwiseMax(Eigen::Map<const Eigen::Vector3f>(map.at(wrapped, y)));
+        }
+      }
+      greatest_ = greatest_.cwiseMax(most);
+    }
+  }
+  cells_.resize(own.size());
+  for (int row = 0; row < kRows; ++row) {
+    // Cells narrow toward the poles.
+    const double lat = kPi * (0.5 - (row + 0.5) / kRows);
+    const int reach = std::min(kColumns / 2, int(std::ceil(1 / std::max(std::cos(lat), 1e-3))));
+    for (int column = 0; column < kColumns; ++column) {
+      Eigen::Vector3f most = Eigen::Vector3f::Zero();
+      for (int y = std::max(0, row - 1); y <= std::min(kRows - 1, row + 1); ++y) {
+        for (int x = column - reach; x <= column + reach; ++x) {
+          most = most.cwiseMax(own[std::size_t(y * kColumns + (x + kColumns) % kColumns)]);
+        }
+      }
+      cells_[std::size_t(row * kColumns + column)] = most;
+    }
+  }
+}
+
+const Eigen::Vector3f& BrightestLight::Near(const Eigen::Vector3f& d) const {
+  const float lon = FastAtan2(-d.x(), d.z());
+  const float lat = FastAtan2(d.y(), std::sqrt(d.x() * d.x() + d.z() * d.z()));
+  const int column = int((lon * float(0.5 / kPi) + 0.5f) * kColumns);
+  const int row = int((0.5f - lat * float(1 / kPi)) * kRows);
+  return cells_[std::size_t(std::clamp(row, 0, kRows - 1) * kColumns +
+                            std::clamp(column, 0, kColumns - 1))];
+}
+
 }  // namespace lorgnette

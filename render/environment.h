@@ -11,6 +11,7 @@
 #include <Eigen/Core>
 #include <memory>
 #include <string>
+#include <vector>
 
 #include "base/image.h"
 #include "base/result.h"
@@ -36,6 +37,20 @@ class Environment {
 
  private:
   ImageRgbF map_;
+};
+
+// The brightest of an environment about a direction, by channel: an upper bound of what a mirror
+// can show within about 6 degrees of it.
+class BrightestLight {
+ public:
+  explicit BrightestLight(const Environment& environment);
+  const Eigen::Vector3f& Near(const Eigen::Vector3f& direction) const;
+  const Eigen::Vector3f& greatest() const { return greatest_; }
+
+ private:
+  static constexpr int kColumns = 64, kRows = 32;
+  std::vector<Eigen::Vector3f> cells_;
+  Eigen::Vector3f greatest_{0, 0, 0};
 };
 
 // An environment blurred once with a rotationally symmetric kernel, for look-ups without any

@@ -84,12 +84,17 @@ Result<HeadScene> HeadScene::Build(const Eyewear& eyewear, const TriangleMesh& f
     return UsageError(
         fmt::format("shadow directions: got {}, want a multiple of 16", options.shadow_directions));
   }
+  if (options.wavelengths < 3 || options.wavelengths % 3 != 0) {
+    return UsageError(
+        fmt::format("wavelengths: got {}, want a multiple of 3", options.wavelengths));
+  }
   TriangleMesh smooth_face = face;
   if (smooth_face.normals.size() != smooth_face.positions.size()) ComputeVertexNormals(smooth_face);
   FrameSurface frame = JoinParts(eyewear, environment);
   LG_ASSIGN(EmbreeScene scene, EmbreeScene::Build(smooth_face, occluder, frame.mesh));
 
   std::vector<LensSolid> lenses;
+  std::vector<LensLook> looks;
   std::vector<double> rim_depth;
   for (const CutLens* cut : {&eyewear.right, &eyewear.left}) {
     if (cut->contour_mm.size() < 3) {
@@ -98,7 +103,10 @@ Result<HeadScene> HeadScene::Build(const Eyewear& eyewear, const TriangleMesh& f
     }
     lenses.emplace_back(cut->lens.lens(), cut->contour_mm,
                         eyewear.head_from_frame * cut->frame_from_lens);
-    rim_depth.push_back(RimDepth(lenses.back(), frame.mesh));
+    const LensSolid& solid = lenses.back();
+    looks.push_back(
+        LookOf(options.finish, solid.lens().medium.index_d, solid.high().y(), solid.low().y()));
+    rim_depth.push_back(RimDepth(solid, frame.mesh));
   }
 
   std::vector<SurfacePoint> frame_points;
@@ -108,10 +116,12 @@ Result<HeadScene> HeadScene::Build(const Eyewear& eyewear, const TriangleMesh& f
   }
   BakedIrradiance frame_light = BakedIrradiance::Bake(scene, frame_points, kFrameDirections);
 
-  const int directions =
-      options.shadow == ShadowMode::kBaked ? options.shadow_directions : kLightDirections;
+  const bool own_directions =
+      options.shadow == ShadowMode::kBaked || options.shadow == ShadowMode::kGathered;
+  const int directions = own_directions ? options.shadow_directions : kLightDirections;
   std::optional<BakedShadow> baked_shadow;
   std::optional<PaperShadow> paper_shadow;
+  std::optional<FaceLattice> gather_lattice;
   if (options.shadow == ShadowMode::kBaked) {
     ShadowOptions shadow;
     shadow.sees_face = options.shadow_sees_face;
@@ -121,6 +131,9 @@ Result<HeadScene> HeadScene::Build(const Eyewear& eyewear, const TriangleMesh& f
     baked_shadow = BakedShadow::Bake(scene, smooth_face, frame.mesh, shadow);
   } else if (options.shadow == ShadowMode::kPaper) {
     paper_shadow.emplace(options.shadow_rays, options.shadow_sees_face);
+  } else if (options.shadow == ShadowMode::kGathered) {
+    gather_lattice.emplace(smooth_face, frame.mesh, options.shadow_spacing_mm,
+                           4 * options.shadow_spacing_mm);
   }
 
   std::vector<Eigen::Vector3f> vertices, normals;
@@ -128,19 +141,23 @@ Result<HeadScene> HeadScene::Build(const Eyewear& eyewear, const TriangleMesh& f
   for (const Eigen::Vector3d& n : smooth_face.normals) normals.push_back(n.cast<float>());
   return HeadScene{options,
                    std::move(scene),
+                   smooth_face,
                    std::move(vertices),
                    std::move(normals),
                    smooth_face.triangles,
                    std::move(frame),
                    std::move(lenses),
+                   std::move(looks),
                    std::move(rim_depth),
                    environment,
                    environment.Mean(),
+                   BrightestLight(environment),
                    SphereDirections(directions),
                    BlurredEnvironment::ForCells(environment, directions),
                    std::move(frame_light),
                    std::move(baked_shadow),
-                   std::move(paper_shadow)};
+                   std::move(paper_shadow),
+                   std::move(gather_lattice)};
 }
 
 }  // namespace lorgnette

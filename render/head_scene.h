@@ -36,22 +36,26 @@ struct HeadScene {
 
   CompositorOptions options;
   EmbreeScene scene;
+  TriangleMesh face;
   std::vector<Eigen::Vector3f> face_vertices;
   std::vector<Eigen::Vector3f> face_normals;
   std::vector<Eigen::Vector3i> face_triangles;
   FrameSurface frame;
   std::vector<LensSolid> lenses;  // right, left
+  std::vector<LensLook> looks;    // one a lens
   // Depth to which the frame reaches into the glass from the contour, mm; rays that stay farther
   // from the wall need no test against the frame.
   std::vector<double> rim_depth_mm;
 
   Environment environment;
   Eigen::Vector3f environment_mean{0, 0, 0};
+  BrightestLight brightest;
   std::vector<Eigen::Vector3f> directions;  // of the baked light
   BlurredEnvironment cells;
   BakedIrradiance frame_light;
   std::optional<BakedShadow> baked_shadow;
   std::optional<PaperShadow> paper_shadow;
+  std::optional<FaceLattice> gather_lattice;
 };
 
 }  // namespace lorgnette

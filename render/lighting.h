@@ -14,6 +14,7 @@
 #include "render/directions.h"
 #include "render/embree_scene.h"
 #include "render/environment.h"
+#include "render/face_lattice.h"
 
 namespace lorgnette {
 
@@ -57,30 +58,25 @@ struct ShadowOptions {
   double spacing_near_mm = 1.0, spacing_far_mm = 3.0;  // of points, near the frame and elsewhere
 };
 
-// Equation (2) of the paper from baked visibility. Points form a lattice on each triangle, fine
-// near the frame, so that a coarse face mesh does not blur the contact.
+// Equation (2) of the paper from baked visibility.
 class BakedShadow {
  public:
   static BakedShadow Bake(const EmbreeScene& scene, const TriangleMesh& face,
                           const TriangleMesh& frame, const ShadowOptions& options);
 
-  std::size_t point_count() const { return point_count_; }
+  std::size_t point_count() const { return lattice_.points().size(); }
   std::size_t touched_count() const { return touched_.size(); }
   // False where the frame hides nothing from any point of the triangle: its ratio is exactly 1.
-  bool touched(std::uint32_t triangle) const { return lattices_[triangle].touched; }
-  // S_withGlasses / S_noGlasses by channel, one a point, in [0, 1]; kBuried where the point lies
-  // inside the frame, which a coarse face mesh can bring about. Ratio passes over such points.
-  static constexpr float kBuried = -1;
+  bool touched(std::uint32_t triangle) const { return lattice_.touched(triangle); }
+  // S_withGlasses / S_noGlasses by channel, one a point, in [0, 1]; without value where the point
+  // lies inside the frame, which a coarse face mesh can bring about.
   std::vector<Eigen::Vector3f> Relight(const HeadLight& light) const;
   Eigen::Vector3f Ratio(const std::vector<Eigen::Vector3f>& relit, std::uint32_t triangle, float u,
-                        float v) const;
+                        float v) const {
+    return lattice_.Interpolate(relit, triangle, u, v);
+  }
 
  private:
-  struct Lattice {
-    std::uint32_t first = 0;  // into corners_
-    std::uint16_t cells = 1;  // along each side
-    bool touched = false;
-  };
   struct Blocked {
     std::uint16_t direction;
     bool hidden;  // by the face, with or without glasses
@@ -105,10 +101,8 @@ class BakedShadow {
                                    const std::vector<Eigen::Vector3f>& sphere,
                                    const Eigen::Vector3f& origin, std::vector<Blocked>& blocked);
 
-  std::size_t point_count_ = 0;
-  std::vector<Lattice> lattices_;       // one a triangle
-  std::vector<std::uint32_t> corners_;  // point indices, (cells + 1)(cells + 2) / 2 a triangle
-  std::vector<Open> open_;              // one a vertex
+  FaceLattice lattice_;
+  std::vector<Open> open_;  // one a vertex
   std::vector<Touched> touched_;
   std::vector<Blocked> blocked_;
 };

@@ -102,6 +102,16 @@ bool PictureView::Background(const Eigen::Vector3f& origin, const Eigen::Vector3
   return true;
 }
 
+const std::vector<Eigen::Vector3f>& PictureView::vertex_colours() const {
+  Once(face_once_, [&] { FillFace(); });
+  return vertex_colours_;
+}
+
+const Eigen::Vector3f& PictureView::face_brightest() const {
+  Once(face_once_, [&] { FillFace(); });
+  return face_brightest_;
+}
+
 const Eigen::Vector3f& PictureView::face_mean() const {
   Once(face_once_, [&] { FillFace(); });
   return face_mean_;
@@ -123,6 +133,7 @@ void PictureView::FillFace() const {
   for (std::size_t i = 0; i < n; ++i) {
     if (!vertex_seen_[i]) continue;
     sum += vertex_colours_[i].cast<double>();
+    face_brightest_ = face_brightest_.cwiseMax(vertex_colours_[i]);
     ++count;
   }
   face_mean_ = Eigen::Vector3f::Constant(0.25f);

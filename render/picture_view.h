@@ -51,7 +51,11 @@ class PictureView {
   // Colour of the background along a ray in head space; false when it does not meet the plane.
   bool Background(const Eigen::Vector3f& origin, const Eigen::Vector3f& direction,
                   Eigen::Vector3f& colour, long& filled) const;
-  // Mean colour of the face's visible vertices.
+  // Colour of the face's vertices: as seen, or spread from where it was.
+  const std::vector<Eigen::Vector3f>& vertex_colours() const;
+  float background_depth() const { return background_depth_; }
+  // The brightest of the face's visible vertices by channel, and their mean colour.
+  const Eigen::Vector3f& face_brightest() const;
   const Eigen::Vector3f& face_mean() const;
 
  private:
@@ -78,7 +82,7 @@ class PictureView {
   mutable std::once_flag face_once_, background_once_;
   mutable std::vector<Eigen::Vector3f> vertex_colours_;
   mutable std::vector<std::uint8_t> vertex_seen_;
-  mutable Eigen::Vector3f face_mean_{0, 0, 0};
+  mutable Eigen::Vector3f face_mean_{0, 0, 0}, face_brightest_{0, 0, 0};
   mutable std::vector<FilledPicture> background_;  // one, once made
 };
 

@@ -6,6 +6,7 @@
 #include <limits>
 
 #include "base/units.h"
+#include "optics/media.h"
 #include "optics/trace.h"
 
 namespace lorgnette {
@@ -54,17 +55,53 @@ bool LensesOverlap(const HeadScene& head, const Camera& camera,
 }  // namespace
 
 RayFollower::RayFollower(const HeadScene& head, const ImageRgbF& input, const Camera& camera,
-                         const Eigen::Isometry3d& camera_from_head)
+                         const Eigen::Isometry3d& camera_from_head, const PictureEffects& effects,
+                         std::optional<double> wavelength_nm)
     : head_(head),
+      effects_(effects),
       world_from_head_(
           (head.options.world_from_camera * camera_from_head.rotation()).cast<float>()),
       picture_(input, camera, camera_from_head, head.scene, head.face_vertices, head.face_normals,
                head.face_triangles, BackgroundDepth(head.options, camera_from_head)) {
+  for (std::size_t i = 0; i < head.lenses.size(); ++i) {
+    const Medium& medium = head.lenses[i].lens().medium;
+    index_.push_back(wavelength_nm ? IndexAt(medium, *wavelength_nm) : medium.index_d);
+    looks_.push_back(head.looks[i]);
+    if (!effects.lens[i][Effect::kCoating]) looks_.back().front = looks_.back().back = {};
+    if (!effects.lens[i][Effect::kTint]) looks_.back().tint = {};
+  }
   const HeadLight light =
       LightAt(head.directions, head.cells, world_from_head_, float(head.options.environment_scale));
-  if (head.baked_shadow) ratios_ = head.baked_shadow->Relight(light);
+  if (head.baked_shadow && effects.rest[Effect::kShadow])
+    ratios_ = head.baked_shadow->Relight(light);
   frame_irradiance_ = head.frame_light.Relight(light, picture_.face_mean());
   lenses_overlap_ = LensesOverlap(head, camera, camera_from_head);
+  if (head.gather_lattice && effects.rest[Effect::kShadow]) {
+    GatherScene gather{head.scene, head.face, head.directions, light, picture_.vertex_colours()};
+    gather.frame_radiance = FrameRadiance();
+    if (effects.Any(Effect::kLensLight)) {
+      gather.lenses = &head.lenses;
+      gather.looks = &looks_;
+      gather.environment = &head.cells;
+    }
+    gather.world_from_head = world_from_head_;
+    gather.environment_scale = float(head.options.environment_scale);
+    gathered_ = GatheredShadow::Gather(gather, *head.gather_lattice);
+  }
+}
+
+std::vector<Eigen::Vector3f> RayFollower::FrameRadiance() const {
+  const FrameSurface& frame = head_.frame;
+  std::vector<Eigen::Vector3f> radiance;
+  for (std::size_t t = 0; t < frame.mesh.triangles.size(); ++t) {
+    const FrameMaterial& material = frame.materials[frame.material_of[t]];
+    for (int k = 0; k < 3; ++k) {
+      radiance.push_back(float(1 / kPi) *
+                         material.diffuse.cwiseProduct(
+                             frame_irradiance_[std::size_t(frame.mesh.triangles[t][k])]));
+    }
+  }
+  return radiance;
 }
 
 Eigen::Vector3f RayFollower::EnvironmentLight(const Eigen::Vector3f& direction) const {
@@ -97,7 +134,7 @@ Eigen::Vector3f RayFollower::Frame(const SceneHit& hit, const Eigen::Vector3f& p
     normal += w[k] * frame.mesh.normals[std::size_t(t[k])].cast<float>();
   }
   Eigen::Vector3f colour = float(1 / kPi) * material.diffuse.cwiseProduct(irradiance);
-  if (material.specular.isZero()) return colour;
+  if (material.specular.isZero() || !effects_.rest[Effect::kGloss]) return colour;
   normal.normalize();
   const float cosine = std::min(std::abs(normal.dot(direction)), 1.0f);
   const Eigen::Vector3f mirrored = direction - 2 * normal.dot(direction) * normal;
@@ -119,7 +156,13 @@ Eigen::Vector3f RayFollower::Frame(const SceneHit& hit, const Eigen::Vector3f& p
 
 Eigen::Vector3f RayFollower::FaceRatio(const SceneHit& hit, const Eigen::Vector3f& point,
                                        PixelState& pixel) const {
-  if (hit.object != SceneObject::kFace) return Eigen::Vector3f::Ones();
+  if (hit.object != SceneObject::kFace || !effects_.rest[Effect::kShadow]) {
+    return Eigen::Vector3f::Ones();
+  }
+  if (gathered_) {
+    if (!gathered_->touched(hit.triangle)) return Eigen::Vector3f::Ones();
+    return Faded(gathered_->Ratio(hit.triangle, hit.u, hit.v), point);
+  }
   if (head_.baked_shadow) {
     if (!head_.baked_shadow->touched(hit.triangle)) return Eigen::Vector3f::Ones();
     return Faded(head_.baked_shadow->Ratio(ratios_, hit.triangle, hit.u, hit.v), point);
@@ -199,73 +242,114 @@ Eigen::Vector3f RayFollower::AtHit(const SceneHit& hit, const Eigen::Vector3f& o
   return colour;
 }
 
+RayFollower::Split RayFollower::AtSurface(std::size_t lens, SolidFace face, double reflectance,
+                                          double cosine_in_air, bool from_glass) const {
+  const LensLook& look = looks_[lens];
+  const SurfaceLook& surface = face == SolidFace::kBack ? look.back : look.front;
+  if (face == SolidFace::kWall || surface.bare()) {
+    return {Eigen::Vector3f::Constant(float(reflectance)),
+            Eigen::Vector3f::Constant(float(1 - reflectance))};
+  }
+  const SurfaceLook::Power power =
+      from_glass ? surface.FromGlass(float(cosine_in_air)) : surface.FromAir(float(cosine_in_air));
+  return {power.reflected, power.passed};
+}
+
 Eigen::Vector3f RayFollower::EnterGlass(std::size_t lens, const Ray& ray, const SolidHit& hit,
                                         double weight, int bounces, PixelState& pixel) const {
   const LensSolid& solid = head_.lenses[lens];
-  const double index = solid.lens().medium.index_d;
-  double reflected =
-      head_.options.reflection
-          ? FresnelReflectance(std::min(-hit.normal.dot(ray.direction), 1.0), 1 / index)
-          : 0;
-  if (weight * reflected < head_.options.least_weight) reflected = 0;
+  const EffectSet& on = effects_.lens[lens];
+  const double cosine = std::min(-hit.normal.dot(ray.direction), 1.0);
+  Split split = AtSurface(lens, hit.face, FresnelReflectance(cosine, 1 / index_[lens]), cosine,
+                          /*from_glass=*/false);
+  const double reflected = weight * double(split.reflected.maxCoeff());
   Eigen::Vector3f colour = Eigen::Vector3f::Zero();
-  if (reflected > 0) {
+  if (on[Effect::kFrontReflection] && reflected >= head_.options.least_weight) {
     const Ray mirrored{hit.point, Reflect(ray.direction, hit.normal)};
-    colour += float(reflected) * Outside(Transformed(solid.head_from_lens(), mirrored),
-                                         weight * reflected, bounces, false, pixel);
+    colour += split.reflected.cwiseProduct(
+        Outside(Transformed(solid.head_from_lens(), mirrored), reflected, bounces, false, pixel));
+  } else {
+    split.passed += split.reflected;  // what is not followed is not lost either
   }
   Eigen::Vector3d direction = ray.direction;
-  if (head_.options.refraction) {
-    direction = Refract(ray.direction, hit.normal, 1 / index)->normalized();
+  if (on[Effect::kRefraction]) {
+    direction = Refract(ray.direction, hit.normal, 1 / index_[lens])->normalized();
   }
-  return colour + float(1 - reflected) * Inside(lens, {hit.point, direction},
-                                                weight * (1 - reflected), bounces, pixel);
+  return colour + split.passed.cwiseProduct(Inside(lens, {hit.point, direction},
+                                                   weight * double(split.passed.maxCoeff()),
+                                                   bounces, pixel));
 }
 
 Eigen::Vector3f RayFollower::Inside(std::size_t lens, const Ray& ray, double weight, int bounces,
                                     PixelState& pixel) const {
   const LensSolid& solid = head_.lenses[lens];
+  const EffectSet& on = effects_.lens[lens];
   const auto hit = solid.Leave(ray);
   if (!hit) return Eigen::Vector3f::Zero();
   const ContourIndex& contour = solid.contour();
   const double depth = head_.rim_depth_mm[lens];
-  if (contour.Clearance(ray.origin.x(), ray.origin.y()) < depth ||
-      contour.Clearance(hit->point.x(), hit->point.y()) < depth) {
+  const bool near_edge = contour.Clearance(ray.origin.x(), ray.origin.y()) < depth ||
+                         contour.Clearance(hit->point.x(), hit->point.y()) < depth;
+  if (near_edge) {
     const Ray in_head = Transformed(solid.head_from_lens(), ray);
     const Eigen::Vector3f origin = in_head.origin.cast<float>();
     const Eigen::Vector3f direction = in_head.direction.cast<float>();
     const SceneHit rim =
         head_.scene.Intersect(RaySet::kFrame, origin, direction, 0, float(hit->distance));
-    if (rim.hit()) return Frame(rim, origin + rim.distance * direction, direction);
+    if (rim.hit()) {
+      const Eigen::Vector3f at = origin + rim.distance * direction;
+      const Eigen::Vector3d point = ray.origin + double(rim.distance) * ray.direction;
+      return looks_[lens].tint.Between(ray.origin, point).cwiseProduct(Frame(rim, at, direction));
+    }
   }
-  if (hit->face == SolidFace::kWall && head_.options.edge == EdgeFinish::kGround) {
-    return kGroundEdgeAlbedo * float(head_.options.environment_scale) * head_.environment_mean;
+  const Eigen::Vector3f tint = looks_[lens].tint.Between(ray.origin, hit->point);
+  if (hit->face == SolidFace::kWall && head_.options.finish.edge == EdgeFinish::kGround) {
+    return kGroundEdgeAlbedo * float(head_.options.environment_scale) *
+           tint.cwiseProduct(head_.environment_mean);
   }
-  const double index = solid.lens().medium.index_d;
+  const double index = index_[lens];
   const double cosine = std::min(hit->normal.dot(ray.direction), 1.0);
   std::optional<Eigen::Vector3d> out = ray.direction;
-  double reflected;
-  if (head_.options.refraction) {
+  double reflectance, cosine_in_air = cosine;
+  if (on[Effect::kRefraction]) {
     out = Refract(ray.direction, hit->normal, index);
-    reflected = out ? FresnelReflectance(cosine, index) : 1;
-    if (!head_.options.reflection && out) reflected = 0;
+    reflectance = out ? FresnelReflectance(cosine, index) : 1;
+    if (out) cosine_in_air = std::min(std::abs(out->normalized().dot(hit->normal)), 1.0);
   } else {
-    reflected = head_.options.reflection ? FresnelReflectance(cosine, 1 / index) : 0;
+    reflectance = FresnelReflectance(cosine, 1 / index);
   }
-  const bool follow = bounces <= head_.options.max_internal_bounces &&
-                      weight * reflected >= head_.options.least_weight;
-  if (!follow && out) reflected = 0;
+  Split split = {Eigen::Vector3f::Ones(), Eigen::Vector3f::Zero()};
+  if (out) split = AtSurface(lens, hit->face, reflectance, cosine_in_air, /*from_glass=*/true);
+  const double passed_by = weight * double(tint.maxCoeff());
+  const double reflected = passed_by * double(split.reflected.maxCoeff());
+  // Total reflection is no effect of its own: there is nothing else that the ray could do.
+  const bool wanted = !out || on[bounces == 0 ? Effect::kBackReflection : Effect::kBounces];
+  const bool follow = wanted && bounces <= head_.options.max_internal_bounces &&
+                      reflected >= head_.options.least_weight;
   Eigen::Vector3f colour = Eigen::Vector3f::Zero();
-  if (follow && reflected > 0) {
-    colour += float(reflected) * Inside(lens, {hit->point, Reflect(ray.direction, hit->normal)},
-                                        weight * reflected, bounces + 1, pixel);
+  if (follow) {
+    const Ray mirrored{hit->point, Reflect(ray.direction, hit->normal)};
+    if (!out || on[Effect::kRings] || !ReachesEdge(lens, mirrored)) {
+      colour += split.reflected.cwiseProduct(Inside(lens, mirrored, reflected, bounces + 1, pixel));
+    } else {
+      split.passed += split.reflected;
+    }
+  } else {
+    split.passed += split.reflected;
   }
   if (out) {
     const Ray leaving = Transformed(solid.head_from_lens(), {hit->point, out->normalized()});
-    colour +=
-        float(1 - reflected) * Outside(leaving, weight * (1 - reflected), bounces, true, pixel);
+    colour += split.passed.cwiseProduct(
+        Outside(leaving, passed_by * double(split.passed.maxCoeff()), bounces, true, pixel));
   }
-  return colour;
+  return tint.cwiseProduct(colour);
+}
+
+bool RayFollower::ReachesEdge(std::size_t lens, const Ray& ray) const {
+  const auto hit = head_.lenses[lens].Leave(ray);
+  return !hit || hit->face == SolidFace::kWall ||
+         head_.lenses[lens].contour().Clearance(hit->point.x(), hit->point.y()) <
+             head_.rim_depth_mm[lens];
 }
 
 }  // namespace lorgnette

@@ -4,8 +4,11 @@
 #pragma once
 
 #include <Eigen/Geometry>
+#include <optional>
 #include <vector>
 
+#include "render/effects.h"
+#include "render/gathered_shadow.h"
 #include "render/head_scene.h"
 #include "render/picture_view.h"
 
@@ -21,10 +24,16 @@ struct PixelState {
 
 class RayFollower {
  public:
+  //   wavelength_nm  whose index the glass has; nullopt: the medium's own (d line)
   RayFollower(const HeadScene& head, const ImageRgbF& input, const Camera& camera,
-              const Eigen::Isometry3d& camera_from_head);
+              const Eigen::Isometry3d& camera_from_head, const PictureEffects& effects,
+              std::optional<double> wavelength_nm = std::nullopt);
 
   const PictureView& picture() const { return picture_; }
+  const EffectSet& effects(std::size_t lens) const { return effects_.lens[lens]; }
+  double index(std::size_t lens) const { return index_[lens]; }
+  // Coats and tint of a lens as they are drawn.
+  const LensLook& look(std::size_t lens) const { return looks_[lens]; }
 
   // First glass on a ray of head space that starts outside.
   struct Entry {
@@ -59,11 +68,21 @@ class RayFollower {
   Eigen::Vector3f Frame(const SceneHit& hit, const Eigen::Vector3f& point,
                         const Eigen::Vector3f& direction) const;
   float FrameOpacity(const SceneHit& hit, const Eigen::Vector3f& point) const;
+  // Radiance of the frame's triangles at their corners, without highlights.
+  std::vector<Eigen::Vector3f> FrameRadiance() const;
   // Equation (2)'s factor at a point of the head.
   Eigen::Vector3f FaceRatio(const SceneHit& hit, const Eigen::Vector3f& point,
                             PixelState& pixel) const;
 
  private:
+  // What a surface of the glass sends back and lets pass, and the share that is worth following.
+  struct Split {
+    Eigen::Vector3f reflected, passed;
+  };
+  Split AtSurface(std::size_t lens, SolidFace face, double reflectance, double cosine_in_air,
+                  bool from_glass) const;
+  // Whether a ray inside the glass (lens frame) next meets the wall, or the rim's reach of it.
+  bool ReachesEdge(std::size_t lens, const Ray& ray) const;
   // 1 at the front, 0 at the ears: how much of a temple beside this point is left.
   float TempleShare(const Eigen::Vector3f& point) const;
   Eigen::Vector3f Faded(const Eigen::Vector3f& ratio, const Eigen::Vector3f& point) const;
@@ -72,11 +91,15 @@ class RayFollower {
                        bool transmitted, PixelState& pixel) const;
 
   const HeadScene& head_;
+  PictureEffects effects_;
+  std::vector<double> index_;    // one a lens
+  std::vector<LensLook> looks_;  // one a lens
   Eigen::Matrix3f world_from_head_;
   bool lenses_overlap_ = false;
   PictureView picture_;
   std::vector<Eigen::Vector3f> ratios_;            // one a baked point
   std::vector<Eigen::Vector3f> frame_irradiance_;  // one a vertex
+  std::optional<GatheredShadow> gathered_;
 };
 
 }  // namespace lorgnette

@@ -109,7 +109,7 @@ TileMask MarkTiles(const HeadScene& head, const Camera& camera,
     }
     marker.Mark(box, i == 0 ? kTileRightLens : kTileLeftLens);
   }
-  const bool everywhere = head.paper_shadow.has_value();
+  const bool everywhere = head.paper_shadow.has_value() || head.gather_lattice.has_value();
   if (!everywhere && !head.baked_shadow) return std::move(marker.mask);
   const std::vector<Eigen::Vector2f> face = marker.ProjectAll(head.face_vertices);
   for (std::size_t t = 0; t < head.face_triangles.size(); ++t) {

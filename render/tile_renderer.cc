@@ -108,15 +108,17 @@ Eigen::Vector3f Mirrored(const Eigen::Vector3f& d, const Eigen::Vector3f& normal
   return d - 2 * d.dot(normal) * normal;
 }
 
+}  // namespace
+
 // A ray through both surfaces away from the edge wall.
-struct Regular {
+struct TileRenderer::Regular {
   std::uint32_t sample;
-  bool near_rim;       // its way inside may meet the frame
-  float enter, leave;  // reflectances at the first and second surface
+  bool near_rim;  // its way inside may meet the frame
+  // Shares of the pixel: mirrored by the first surface; gone through both; mirrored by the second.
+  Eigen::Vector3f enter, through, back;
+  Eigen::Vector3f entered;  // has passed the first surface
   Eigen::Vector3f first_point, first_normal, inside, second_point, second_normal, exit;
 };
-
-}  // namespace
 
 struct TileRenderer::Batch {
   Bundle primary;
@@ -135,7 +137,7 @@ struct TileRenderer::Batch {
   // Head space.
   Bundle rim, main, front_reflection, back_reflection;
   std::vector<std::uint32_t> main_of, front_of, back_of;
-  std::vector<float> back_weight;
+  std::vector<Eigen::Vector3f> back_weight;
 };
 
 TileRenderer::TileRenderer(const HeadScene& head, const RayFollower& follower, const Camera& camera,
@@ -206,10 +208,41 @@ void TileRenderer::TraceExactly(std::size_t i, const Batch& batch,
       follower_.EnterGlass(glass->lens, glass->ray, glass->hit, 1, 0, pixels[sample.pixel]);
 }
 
+// How the light of a ray through both surfaces is shared out. `reflectance` is that of bare glass.
+void TileRenderer::Share(std::size_t lens, float enter, float leave,
+                         const Eigen::Vector3f& direction, Regular& r) const {
+  const EffectSet& on = follower_.effects(lens);
+  const LensLook& look = follower_.look(lens);
+  const auto plain = [](float reflectance) {
+    return SurfaceLook::Power{Eigen::Vector3f::Constant(reflectance),
+                              Eigen::Vector3f::Constant(1 - reflectance)};
+  };
+  SurfaceLook::Power first = look.front.bare()
+                                 ? plain(enter)
+                                 : look.front.FromAir(std::abs(direction.dot(r.first_normal)));
+  SurfaceLook::Power second =
+      look.back.bare() ? plain(leave) : look.back.FromGlass(std::abs(r.exit.dot(r.second_normal)));
+  // What is not followed is not lost either.
+  const auto forgo = [](SurfaceLook::Power& power) {
+    power.passed += power.reflected;
+    power.reflected.setZero();
+  };
+  if (!on[Effect::kFrontReflection]) forgo(first);
+  if (!on[Effect::kBackReflection]) forgo(second);
+  r.enter = first.reflected;
+  r.entered = first.passed;
+  const Eigen::Vector3f inside =
+      look.tint.clear() ? first.passed
+                        : first.passed.cwiseProduct(look.tint.Between(
+                              r.first_point.cast<double>(), r.second_point.cast<double>()));
+  r.through = inside.cwiseProduct(second.passed);
+  r.back = inside.cwiseProduct(second.reflected);
+}
+
 void TileRenderer::TraceLens(std::size_t lens, Batch& batch, std::vector<CameraSample>& samples,
                              std::vector<PixelState>& pixels) const {
   const LensSolid& solid = head_.lenses[lens];
-  const double index = solid.lens().medium.index_d;
+  const double index = follower_.index(lens);
   const Eigen::Matrix3f lens_from_head = solid.lens_from_head().linear().cast<float>();
   const Eigen::Matrix3f head_from_lens = solid.head_from_lens().linear().cast<float>();
   const Eigen::Vector3f lens_in_head = solid.head_from_lens().translation().cast<float>();
@@ -276,14 +309,13 @@ void TileRenderer::TraceLens(std::size_t lens, Batch& batch, std::vector<CameraS
     r.sample = i;
     r.near_rim = contour.Clearance(double(p1.x()), double(p1.y())) < rim ||
                  contour.Clearance(double(p2.x()), double(p2.y())) < rim;
-    r.enter = batch.enter[k];
-    r.leave = batch.leave[k];
     r.first_point = p1;
     r.first_normal = batch.first.vector(k);
     r.inside = batch.inside.vector(k);
     r.second_point = p2;
     r.second_normal = batch.second.vector(k);
     r.exit = batch.exit.vector(k);
+    Share(lens, batch.enter[k], batch.leave[k], batch.in.vector(k), r);
     batch.regular.push_back(r);
   }
 
@@ -296,7 +328,7 @@ void TileRenderer::TraceLens(std::size_t lens, Batch& batch, std::vector<CameraS
   }
   batch.rim.Trace(head_.scene, RaySet::kFrame);
 
-  const bool reflection = head_.options.reflection;
+  const LensLook& look = follower_.look(lens);
   batch.main.Clear();
   batch.front_reflection.Clear();
   batch.back_reflection.Clear();
@@ -306,11 +338,10 @@ void TileRenderer::TraceLens(std::size_t lens, Batch& batch, std::vector<CameraS
   std::size_t rim_next = 0;
   for (std::size_t k = 0; k < batch.regular.size(); ++k) {
     Regular& r = batch.regular[k];
-    if (!reflection) r.enter = r.leave = 0;
     CameraSample& sample = samples[r.sample];
     sample.direct.setZero();
     const Eigen::Vector3f d = lens_from_head * batch.primary.directions[r.sample];
-    if (r.enter > 0) {
+    if (r.enter.maxCoeff() > 0) {
       batch.front_of.push_back(std::uint32_t(k));
       batch.front_reflection.Add(to_head(r.first_point),
                                  head_from_lens * Mirrored(d, r.first_normal));
@@ -319,16 +350,15 @@ void TileRenderer::TraceLens(std::size_t lens, Batch& batch, std::vector<CameraS
       const std::size_t j = rim_next++;
       if (const SceneHit& hit = batch.rim.hits[j]; hit.hit()) {
         sample.kind = CameraSample::Kind::kFrame;
-        sample.inserted +=
-            (1 - r.enter) *
+        sample.inserted += r.entered.cwiseProduct(
             follower_.Frame(hit, batch.rim.origins[j] + hit.distance * batch.rim.directions[j],
-                            batch.rim.directions[j]);
+                            batch.rim.directions[j]));
         continue;
       }
     }
     batch.main_of.push_back(std::uint32_t(k));
     batch.main.Add(to_head(r.second_point), head_from_lens * r.exit);
-    if (r.leave > 0) batch.back_of.push_back(std::uint32_t(k));
+    if (r.back.maxCoeff() > 0) batch.back_of.push_back(std::uint32_t(k));
   }
 
   // Back reflection: from the second surface to the first, and out.
@@ -353,16 +383,21 @@ void TileRenderer::TraceLens(std::size_t lens, Batch& batch, std::vector<CameraS
     const std::uint32_t k = batch.back_of[j];
     const Regular& r = batch.regular[k];
     const Eigen::Vector3f p = batch.back_hit.point(j);
-    const float weight = (1 - r.enter) * r.leave;
+    Eigen::Vector3f weight = r.back;
     CameraSample& sample = samples[r.sample];
     if (batch.back_status[j] != std::uint8_t(RayStatus::kOk) ||
         contour.Clearance(double(p.x()), double(p.y())) < rim) {
-      if (double(weight) < head_.options.least_weight) continue;
+      const double most = double(weight.maxCoeff());
+      if (most < head_.options.least_weight || !follower_.effects(lens)[Effect::kRings]) continue;
       const Ray chain{r.second_point.cast<double>(),
                       batch.back_in.vector(j).cast<double>().normalized()};
       sample.inserted +=
-          weight * follower_.Inside(lens, chain, double(weight), 2, pixels[sample.pixel]);
+          weight.cwiseProduct(follower_.Inside(lens, chain, most, 2, pixels[sample.pixel]));
       continue;
+    }
+    if (!look.tint.clear()) {
+      weight =
+          weight.cwiseProduct(look.tint.Between(r.second_point.cast<double>(), p.cast<double>()));
     }
     batch.back_of[kept++] = k;
     batch.back_weight.push_back(weight);
@@ -373,12 +408,12 @@ void TileRenderer::TraceLens(std::size_t lens, Batch& batch, std::vector<CameraS
   batch.main.Trace(head_.scene, RaySet::kAll);
   batch.front_reflection.Trace(head_.scene, RaySet::kAll);
   batch.back_reflection.Trace(head_.scene, RaySet::kAll);
-  const auto add = [&](std::uint32_t k, const Bundle& bundle, std::size_t j, float weight,
-                       bool transmitted) {
+  const auto add = [&](std::uint32_t k, const Bundle& bundle, std::size_t j,
+                       const Eigen::Vector3f& weight, bool transmitted) {
     CameraSample& sample = samples[batch.regular[k].sample];
     sample.inserted +=
-        weight * follower_.AtHit(bundle.hits[j], bundle.origins[j], bundle.directions[j],
-                                 transmitted, pixels[sample.pixel]);
+        weight.cwiseProduct(follower_.AtHit(bundle.hits[j], bundle.origins[j], bundle.directions[j],
+                                            transmitted, pixels[sample.pixel]));
   };
   const bool other_lens_near = head_.lenses.size() > 1 && follower_.lenses_overlap();
   for (std::size_t j = 0; j < batch.main_of.size(); ++j) {
@@ -388,17 +423,16 @@ void TileRenderer::TraceLens(std::size_t lens, Batch& batch, std::vector<CameraS
     const SceneHit& hit = batch.main.hits[j];
     sample.kind = hit.object == SceneObject::kFace ? CameraSample::Kind::kLensToHead
                                                    : CameraSample::Kind::kLensElsewhere;
-    const float weight = (1 - r.enter) * (1 - r.leave);
     if (other_lens_near) {
       const Ray leaving{batch.main.origins[j].cast<double>(),
                         batch.main.directions[j].cast<double>().normalized()};
       if (follower_.FirstGlass(leaving)) {
-        sample.inserted +=
-            weight * follower_.Outside(leaving, double(weight), 1, true, pixels[sample.pixel]);
+        sample.inserted += r.through.cwiseProduct(follower_.Outside(
+            leaving, double(r.through.maxCoeff()), 1, true, pixels[sample.pixel]));
         continue;
       }
     }
-    add(k, batch.main, j, weight, true);
+    add(k, batch.main, j, r.through, true);
   }
   for (std::size_t j = 0; j < batch.front_of.size(); ++j) {
     add(batch.front_of[j], batch.front_reflection, j, batch.regular[batch.front_of[j]].enter,
@@ -417,7 +451,7 @@ void TileRenderer::Trace(std::vector<CameraSample>& samples, std::uint8_t conten
   const std::uint8_t lens_bits[2] = {kTileRightLens, kTileLeftLens};
   for (std::size_t lens = 0; lens < head_.lenses.size(); ++lens) {
     if (!(content & lens_bits[lens])) continue;
-    if (head_.options.refraction &&
+    if (follower_.effects(lens)[Effect::kRefraction] &&
         (content & (kTileRightLens | kTileLeftLens)) == lens_bits[lens]) {
       TraceLens(lens, batch, samples, pixels);
     } else {

@@ -35,7 +35,10 @@ class TileRenderer {
              std::vector<PixelState>& pixels) const;
 
  private:
+  struct Regular;
   struct Batch;
+  void Share(std::size_t lens, float enter, float leave, const Eigen::Vector3f& direction,
+             Regular& ray) const;
   void TracePrimary(Batch& batch, std::vector<CameraSample>& samples) const;
   void TraceLens(std::size_t lens, Batch& batch, std::vector<CameraSample>& samples,
                  std::vector<PixelState>& pixels) const;

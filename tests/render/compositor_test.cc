@@ -12,44 +12,7 @@ namespace lorgnette {
 namespace {
 
 using test::LensRecipe;
-
-// A thin round rim about each lens, as a tube of square section.
-TriangleMesh Rim(double a_mm, double b_mm, const Eigen::Vector3d& centre) {
-  TriangleMesh mesh;
-  constexpr int kSides = 96;
-  const double offsets[4][2] = {{-0.6, -2.5}, {2.4, -2.5}, {2.4, 2.5}, {-0.6, 2.5}};
-  for (int i = 0; i < kSides; ++i) {
-    const double angle = 2 * kPi * i / kSides;
-    const Eigen::Vector2d p(0.5 * a_mm * std::cos(angle), 0.5 * b_mm * std::sin(angle));
-    const Eigen::Vector2d n =
-        Eigen::Vector2d(std::cos(angle) / a_mm, std::sin(angle) / b_mm).normalized();
-    for (const auto& o : offsets) {
-      mesh.positions.push_back(centre +
-                               Eigen::Vector3d(p.x() + o[0] * n.x(), p.y() + o[0] * n.y(), o[1]));
-    }
-    for (int k = 0; k < 4; ++k) {
-      const int a = 4 * i + k, b = 4 * i + (k + 1) % 4;
-      const int c = 4 * ((i + 1) % kSides) + k, d = 4 * ((i + 1) % kSides) + (k + 1) % 4;
-      mesh.triangles.emplace_back(a, c, d);
-      mesh.triangles.emplace_back(a, d, b);
-    }
-  }
-  ComputeVertexNormals(mesh);
-  return mesh;
-}
-
-Eyewear WithRims(const LensRecipe& recipe) {
-  Eyewear eyewear = test::MakeEyewear(recipe);
-  FramePart part;
-  part.name = "front";
-  part.kind = FramePartKind::kFront;
-  for (const double x : {-test::kHalfPd_mm, test::kHalfPd_mm}) {
-    Append(part.mesh, Rim(recipe.width_mm, recipe.height_mm, {x, 0, test::kVertexDistance_mm + 1}));
-  }
-  part.material.diffuse = {0.3f, 0.1f, 0.05f};
-  eyewear.frame.parts.push_back(std::move(part));
-  return eyewear;
-}
+using test::WithRims;
 
 ImageRgbF Pattern(int width, int height) {
   ImageRgbF image(width, height);
@@ -107,7 +70,7 @@ TEST(Compositor, ShowsNoLensInAWhiteFurnace) {
   for (const LensRecipe& recipe : {LensRecipe{-6, 0, 0, 1.6}, LensRecipe{5, -1, 20, 1.5}}) {
     CompositorOptions options;
     options.shadow = ShadowMode::kNone;
-    options.edge = EdgeFinish::kPolished;
+    options.finish.edge = EdgeFinish::kPolished;
     options.max_internal_bounces = 16;
     const test::View view = Front();
     const ImageRgbF input = test::ConstantImage(kWidth, kHeight, 1);
@@ -188,9 +151,9 @@ TEST(Compositor, LeavesOutWhatIsSwitchedOff) {
   const ImageRgbF input = Pattern(kWidth, kHeight);
   const test::View view = Front();
   CompositorOptions options;
-  options.refraction = options.reflection = false;
+  options.effects = EffectSet::None();
   options.shadow = ShadowMode::kNone;
-  options.edge = EdgeFinish::kPolished;
+  options.finish.edge = EdgeFinish::kPolished;
   const ImageRgbF output =
       Make(test::MakeEyewear({}), test::Wall(400, 0), Environment::Constant({5, 5, 5}), options)
           .Render(input, view.camera, view.camera_from_head);

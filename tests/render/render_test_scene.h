@@ -30,6 +30,7 @@ inline std::vector<Eigen::Vector2d> Ellipse(double a_mm, double b_mm, int points
 struct LensRecipe {
   double sphere = -6, cylinder = 0, axis = 0, index = 1.6;
   double width_mm = 48, height_mm = 36;
+  double abbe = 58;
 };
 
 inline CertifiedLens MakeLens(const LensRecipe& recipe, Eye eye = Eye::kRight) {
@@ -39,6 +40,7 @@ inline CertifiedLens MakeLens(const LensRecipe& recipe, Eye eye = Eye::kRight) {
   order.rx.cylinder = Diopters(recipe.cylinder);
   order.rx.axis = AxisDegrees(recipe.axis);
   order.medium.index_d = recipe.index;
+  order.medium.abbe = recipe.abbe;
   order.contour_mm = Ellipse(recipe.width_mm, recipe.height_mm);
   auto design = DesignLens(order);
   EXPECT_TRUE(design) << design.error().message;
@@ -63,6 +65,44 @@ inline Eyewear MakeEyewear(const LensRecipe& recipe) {
   Eyewear eyewear{FrameModel{}, cut(Eye::kRight, -kHalfPd_mm), cut(Eye::kLeft, kHalfPd_mm),
                   Eigen::Isometry3d::Identity(), WearingPosition{}};
   eyewear.frame.name = "none";
+  return eyewear;
+}
+
+// A thin round rim about each lens, as a tube of square section.
+inline TriangleMesh Rim(double a_mm, double b_mm, const Eigen::Vector3d& centre) {
+  TriangleMesh mesh;
+  constexpr int kSides = 96;
+  const double offsets[4][2] = {{-0.6, -2.5}, {2.4, -2.5}, {2.4, 2.5}, {-0.6, 2.5}};
+  for (int i = 0; i < kSides; ++i) {
+    const double angle = 2 * kPi * i / kSides;
+    const Eigen::Vector2d p(0.5 * a_mm * std::cos(angle), 0.5 * b_mm * std::sin(angle));
+    const Eigen::Vector2d n =
+        Eigen::Vector2d(std::cos(angle) / a_mm, std::sin(angle) / b_mm).normalized();
+    for (const auto& o : offsets) {
+      mesh.positions.push_back(centre +
+                               Eigen::Vector3d(p.x() + o[0] * n.x(), p.y() + o[0] * n.y(), o[1]));
+    }
+    for (int k = 0; k < 4; ++k) {
+      const int a = 4 * i + k, b = 4 * i + (k + 1) % 4;
+      const int c = 4 * ((i + 1) % kSides) + k, d = 4 * ((i + 1) % kSides) + (k + 1) % 4;
+      mesh.triangles.emplace_back(a, c, d);
+      mesh.triangles.emplace_back(a, d, b);
+    }
+  }
+  ComputeVertexNormals(mesh);
+  return mesh;
+}
+
+inline Eyewear WithRims(const LensRecipe& recipe) {
+  Eyewear eyewear = MakeEyewear(recipe);
+  FramePart part;
+  part.name = "front";
+  part.kind = FramePartKind::kFront;
+  for (const double x : {-kHalfPd_mm, kHalfPd_mm}) {
+    Append(part.mesh, Rim(recipe.width_mm, recipe.height_mm, {x, 0, kVertexDistance_mm + 1}));
+  }
+  part.material.diffuse = {0.3f, 0.1f, 0.05f};
+  eyewear.frame.parts.push_back(std::move(part));
   return eyewear;
 }
 

@@ -199,7 +199,7 @@ TEST(BakedShadow, PassesOverPointsInsideTheFrame) {
       SphereDirections(1024), BlurredEnvironment::ForCells(Environment::Constant({1, 1, 1}), 1024),
       Eigen::Matrix3f::Identity(), 1));
   int buried = 0;
-  for (const Eigen::Vector3f& r : ratios) buried += r.x() == BakedShadow::kBuried;
+  for (const Eigen::Vector3f& r : ratios) buried += r.x() == FaceLattice::kNoValue;
   EXPECT_GT(buried, 0);
   for (std::uint32_t t = 0; t < face.triangles.size(); ++t) {
     for (const float u : {0.0f, 0.2f, 0.5f, 0.9f}) {

@@ -1,0 +1,29 @@
+// SPDX-License-Identifier: Apache-2.0
+// Blur and grain of a video, measured on a picture of it and given to what was inserted.
+//
+// Grain: standard deviation of the display-encoded luma in the smoothest blocks (the operator of
+// Immerkaer, CVIU 64(2), 1996). Blur: standard deviation of a Gaussian edge, from the ratio of the
+// gradients before and after a known blur (Zhuo and Sim, Pattern Recognition 44(9), 2011). Tested
+// on pictures with grain and blur put in.
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "base/image.h"
+
+namespace lorgnette {
+
+struct CameraLook {
+  double grain_codes = 0;  // of 255
+  double blur_px = 0;      // standard deviation
+};
+CameraLook MeasureCameraLook(const ImageRgbF& input);
+
+// Softens the picture where `coverage` (one a pixel, 0..1: share of inserted surface that did not
+// come through the camera) rises or falls, and lays grain over it. The same seed gives the same
+// grain; pixels farther than three blurs from any coverage stay as they are, bit for bit.
+void ApplyCameraLook(const CameraLook& look, const std::vector<float>& coverage, std::uint32_t seed,
+                     ImageRgbF& picture);
+
+}  // namespace lorgnette
