@@ -19,7 +19,7 @@ namespace {
 struct ComposeCommandOptions {
   std::string scene, output, hits, report;
   bool caustics = false;
-  EffectOptions effects{.effects = "paper"};
+  EffectOptions effects;
 };
 
 Status CheckExr(const char* option, const std::string& path) {
@@ -64,6 +64,7 @@ void AddComposeCommand(CLI::App& program, CommandContext& context) {
   command.add_flag("--caustics", options->caustics,
                    "Light the skin through the lenses, too (the effect lens-light)");
   command.add_option("--report", options->report, "Write the effects and their estimates (JSON)");
+  options->effects.effects = "paper";
   AddEffectOptions(command, options->effects);
   command.footer(
       "Examples:\n"

@@ -95,7 +95,8 @@ void AddTryonCommand(CLI::App& program, CommandContext& context) {
       .add_option("-o,--output", request.output,
                   "Video (.mp4 .mov .mkv), image sequence, or image for one image")
       ->required();
-  command.add_option("--env", request.environment, "Light: EXR or HDR, latitude-longitude");
+  command.add_option("--env", request.environment,
+                     "Light: EXR or HDR, latitude-longitude, or `face`: as the face shows it");
   command.add_option("--track", request.track, "Track file, in place of tracking the video");
   command.add_option("--frames", options->frames, "Part of the clip, A:B, first and last frame");
   command.add_option("--stills", request.stills, "Also write this many stills beside the output")

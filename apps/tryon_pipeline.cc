@@ -19,7 +19,9 @@
 #include "base/progress.h"
 #include "geometry/frame_io.h"
 #include "geometry/head_occluder.h"
+#include "render/color.h"
 #include "render/environment.h"
+#include "render/face_light.h"
 #include "render/image_io.h"
 #include "render/video_io.h"
 
@@ -76,6 +78,36 @@ class TrackLookup {
   const HeadTrack& track_;
   double tolerance_s_;
 };
+
+// The environment with the broad light that the first tracked picture shows on the face.
+Result<Environment> LitLikeTheFace(const TryonRequest& request, const HeadTrack& track,
+                                   TryonResult& result) {
+  const std::string path = DefaultEnvironment();
+  Environment detail = Environment::Constant({1, 1, 1});
+  if (!path.empty()) {
+    LG_ASSIGN(detail, Environment::Read(path));
+  }
+  LG_ASSIGN(VideoReader reader, VideoReader::Open(request.video));
+  const TrackLookup lookup(track, reader.info().frame_rate);
+  while (true) {
+    LG_ASSIGN(const std::optional<VideoFrame> frame, reader.Next());
+    if (!frame) break;
+    const TrackedFrame* tracked = lookup.At(frame->time_s);
+    if (tracked == nullptr || !tracked->found) continue;
+    TriangleMesh face = track.face;
+    ComputeVertexNormals(face);
+    const auto light =
+        FitFaceLight(LinearFromDisplay(frame->rgb), track.camera, tracked->camera_from_head, face,
+                     request.compositor.world_from_camera);
+    if (!light) break;
+    result.environment =
+        fmt::format("the face of the first frame{}{}", path.empty() ? "" : " and ", path);
+    return path.empty() ? EnvironmentOf(*light) : Relit(detail, *light);
+  }
+  result.environment = path.empty() ? "even grey" : path;
+  result.warnings.emplace_back("the face does not tell its light: the default environment is used");
+  return detail;
+}
 
 // Cuts a track down to the frames of a range of the video, and says when one is missing. What the
 // frames' times are, only the video knows.
@@ -336,7 +368,11 @@ Result<TryonResult> RunTryon(const TryonRequest& request) {
 
   LG_ASSIGN(result.prescription, ReadRxFile(request.rx, request.pd_mm));
   LG_ASSIGN(const FrameModel frame, LoadFrame(request.frame));
-  LG_ASSIGN(const Environment environment, ReadEnvironment(request, result));
+  const bool from_face = request.environment == "face";
+  Environment environment = Environment::Constant({1, 1, 1});
+  if (!from_face) {
+    LG_ASSIGN(environment, ReadEnvironment(request, result));
+  }
   LG_ASSIGN(VideoReader reader, VideoReader::Open(request.video));
   VideoWriterOptions writing;
   writing.start_at_first_frame = !request.frames.IsWhole();
@@ -357,6 +393,9 @@ Result<TryonResult> RunTryon(const TryonRequest& request) {
   result.camera = track.camera;
   result.pd_mm = track.pd_mm;
   SummarizePoses(track, result);
+  if (from_face) {
+    LG_ASSIGN(environment, LitLikeTheFace(request, track, result));
+  }
 
   TriangleMesh occluder;
   {

@@ -20,7 +20,8 @@ namespace lorgnette {
 
 struct TryonRequest {
   std::string video, rx, frame, output;
-  std::string environment;  // EXR or HDR; empty: DefaultEnvironment(), or even grey light
+  std::string environment;  // EXR or HDR; empty: DefaultEnvironment(), or even grey light; `face`:
+                            // that, with the broad light that the face shows
   std::string track;        // track file; empty: the video is tracked
   std::string report;       // empty: none
   std::string model_dir;
@@ -62,10 +63,10 @@ struct TryonResult {
   std::string environment;  // what lit the scene
   double environment_scale = 1;
   Prescription prescription;
-  std::optional<Eyewear> eyewear;                   // always there in a result
-  double pad_shift_mm = 0, temple_opening_deg = 0;  // adjustments of the frame
-  RenderCounts counts;                              // sums over the frames
-  EffectPlan first_plan;                            // of the first frame with a face
+  std::optional<Eyewear> eyewear;                                 // always there in a result
+  double pad_shift_mm = 0, temple_opening_deg = 0;                // adjustments of the frame
+  RenderCounts counts;                                            // sums over the frames
+  EffectPlan first_plan;                                          // of the first frame with a face
   std::array<std::array<long, kEffectCount>, 3> effect_frames{};  // by region: drawn in how many
   std::vector<std::string> stills, warnings;
   StageSeconds seconds;

@@ -191,7 +191,7 @@ Result<ComposeCase> ReadComposeCase(const std::string& path) {
   options.samples_per_side = 4;
   options.shadow = ShadowMode::kGathered;
   options.shadow_directions = 2048;
-  options.shadow_spacing_mm = 0.75;
+  options.shadow_spacing_mm = 1.5;
   options.max_internal_bounces = 12;
   options.least_weight = 0.001;
   options.finish.edge = EdgeFinish::kPolished;

@@ -200,8 +200,7 @@ ImageRgbF Compositor::RenderBands(const ImageRgbF& input, const Camera& camera,
 ImageRgbF Compositor::RenderPass(const ImageRgbF& input, const Camera& camera,
                                  const Eigen::Isometry3d& camera_from_head,
                                  const PictureEffects& effects, std::optional<double> wavelength_nm,
-                                 RenderCounts* counts,
-                                 std::vector<float>* frame_share) const {
+                                 RenderCounts* counts, std::vector<float>* frame_share) const {
   const HeadScene& head = scene_->head;
   const RayFollower follower(head, input, camera, camera_from_head, effects, wavelength_nm);
   const TileRenderer renderer(head, follower, camera, camera_from_head);

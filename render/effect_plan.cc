@@ -30,6 +30,8 @@ struct LensSurvey {
   double share_px = 0;   // pixels that a sample stands for
   double near_edge = 0;  // share of the samples beside the edge
   double refraction_px = 0, dispersion_px = 0;
+  // How much wider or narrower the edge wall looks, pixels.
+  double refraction_wall_px = 0, dispersion_wall_px = 0;
   Eigen::Vector3f front{0, 0, 0}, back{0, 0, 0}, rings{0, 0, 0}, bounces{0, 0, 0};
   Eigen::Vector3f coating{0, 0, 0};
   Eigen::Vector3f tint{0, 0, 0};
@@ -160,10 +162,22 @@ class Surveyor {
                    solid.head_from_lens().linear() * t.exit.direction);
     };
     const auto at = reads(trace);
+    const auto wall_px = [&](const Eigen::Vector3d& a, const Eigen::Vector3d& b) {
+      return std::abs(a.head<2>().norm() / a.z() - b.head<2>().norm() / b.z()) *
+             (trace.second.point - trace.first.point).norm() * PixelsPerMm(solid);
+    };
+    if (beside_edge) {
+      survey.refraction_wall_px =
+          std::max(survey.refraction_wall_px, wall_px(near.direction, trace.inside_direction));
+    }
     const Eigen::Vector2d place = at.value_or(Eigen::Vector2d(1e4, 1e4));
     survey.refraction_px = std::max(survey.refraction_px, (place - pixel).norm());
     for (const double nm : {kBlue_nm, kRed_nm}) {
       const LensTrace other = TraceThrough(solid.lens(), near, IndexAt(solid.lens().medium, nm));
+      if (beside_edge && other.status == RayStatus::kOk) {
+        survey.dispersion_wall_px = std::max(
+            survey.dispersion_wall_px, wall_px(trace.inside_direction, other.inside_direction));
+      }
       const auto p = other.status == RayStatus::kOk ? reads(other) : std::nullopt;
       if (!p || !at) continue;
       const double shift = (*p - place).norm();
@@ -348,12 +362,15 @@ EffectPlan PlanEffects(const HeadScene& head, const RayFollower& follower, const
       plan.decisions.push_back(d);
     };
     const Eigen::Vector3f none = Eigen::Vector3f::Zero();
-    add(Effect::kRefraction, s.refraction_px, none, ray_ms);
-    add(Effect::kDispersion, s.dispersion_px, none, 2 * ray_ms);
+    // A wall of light against the skin, by the share of a pixel that it gains or loses.
+    const Eigen::Vector3f wall =
+        s.brightest.cwiseMax(float(head.options.environment_scale) * head.environment_mean);
+    add(Effect::kRefraction, s.refraction_px, float(s.refraction_wall_px) * wall, ray_ms);
+    add(Effect::kDispersion, s.dispersion_px, float(s.dispersion_wall_px) * wall, 2 * ray_ms);
     add(Effect::kFrontReflection, 0, s.front, ray_ms);
     add(Effect::kBackReflection, 0, s.back, ray_ms);
     add(Effect::kRings, 0, s.rings, edge_ms);
-    add(Effect::kBounces, 0, s.bounces, edge_ms);
+    add(Effect::kBounces, 0, s.bounces, follower.follows_ghosts(lens) ? 10 * ray_ms : edge_ms);
     const bool coated = !head.looks[lens].front.bare() || !head.looks[lens].back.bare();
     add(Effect::kCoating, 0, coated ? s.coating : none, 0.05 * ray_ms);
     add(Effect::kTint, 0, head.looks[lens].tint.clear() ? none : s.tint, 0.05 * ray_ms);

@@ -8,7 +8,9 @@
 // leaving that one out exceeds it.
 #pragma once
 
+#include <Eigen/Geometry>
 #include <array>
+#include <cstdint>
 #include <string>
 #include <string_view>
 #include <vector>

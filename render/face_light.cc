@@ -18,7 +18,7 @@ constexpr int kMapWidth = 64;
 // A vertex whose normal leans farther from the camera shares its pixel with the background.
 constexpr double kLeastCosine = 0.3;
 // Beside the fit's own weights: how much a term of degree 1 and 2 costs.
-constexpr double kSmoothness[3] = {1e-4, 0.02, 0.06};
+constexpr double kSmoothness[3] = {1e-4, 0.004, 0.012};
 constexpr int kRounds = 6;  // of reweighting: eyes, brows and lips are no skin
 
 int DegreeOf(int term) { return term == 0 ? 0 : term < 4 ? 1 : 2; }

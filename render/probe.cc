@@ -20,6 +20,7 @@ namespace {
 constexpr int kSearchSide = 220;  // of the reduced picture that is searched
 constexpr int kPerimeter = 96;    // samples of a circle
 constexpr double kLeastVisible = 0.6;
+constexpr double kEvidence = 1;      // exponent
 constexpr double kFar = 1e4;         // radii: as good as infinitely far
 constexpr double kRimShown = 0.985;  // beyond this share of the radius the outline's blur begins
 
@@ -77,12 +78,16 @@ LogPicture Reduce(const ImageRgb8& picture, int side) {
   return out;
 }
 
-// Mean of the radial jumps along a circle, each capped, so that a few bright edges do not decide;
-// 0 when too little of it lies in the picture.
+// Mean of the radial jumps along a circle less that of the jumps along it, each capped, so that a
+// few bright edges do not decide and a pattern counts as much one way as the other; 0 when too
+// little of it lies in the picture.
 double Score(const LogPicture& p, double cx, double cy, double r, float cap) {
   double sum = 0;
   int seen = 0;
   const double reach = std::max(1.0, 0.012 * r);
+  const auto jump = [&](double x0, double y0, double x1, double y1) {
+    return std::min(std::abs(p.at(x1, y1) - p.at(x0, y0)), cap);
+  };
   for (int i = 0; i < kPerimeter; ++i) {
     const double a = 2 * kPi * i / kPerimeter;
     const double c = std::cos(a), s = std::sin(a);
@@ -91,12 +96,12 @@ double Score(const LogPicture& p, double cx, double cy, double r, float cap) {
       continue;
     }
     ++seen;
-    const float jump = std::abs(p.at(cx + (r + reach) * c, cy + (r + reach) * s) -
-                                p.at(cx + (r - reach) * c, cy + (r - reach) * s));
-    sum += double(std::min(jump, cap)) / (2 * reach);
+    const double dx = reach * c, dy = reach * s;
+    sum +=
+        double(jump(x - dx, y - dy, x + dx, y + dy)) - double(jump(x + dy, y - dx, x - dy, y + dx));
   }
   const double share = double(seen) / kPerimeter;
-  return share < kLeastVisible ? 0 : sum / seen * std::sqrt(share);
+  return share < kLeastVisible ? 0 : sum / (2 * reach * seen) * std::sqrt(share);
 }
 
 float MeanGradient(const LogPicture& p) {
@@ -245,6 +250,9 @@ Merged Merge(const std::vector<Exposure>& exposures, double rho, double azimuth)
   return out;
 }
 
+// A long outline that stands out says more than a short one.
+double Evidence(double radius) { return std::pow(radius, kEvidence); }
+
 }  // namespace
 
 std::optional<BallCircle> FindBall(const ImageRgb8& picture) {
@@ -259,7 +267,7 @@ std::optional<BallCircle> FindBall(const ImageRgb8& picture) {
     for (double y = 0.2 * coarse.height; y <= 0.8 * coarse.height; y += 2) {
       for (double x = 0.2 * coarse.width; x <= 0.8 * coarse.width; x += 2) {
         const double score = Score(coarse, x, y, r, cap);
-        if (score > 0) best.push_back({x, y, r, score});
+        if (score > 0) best.push_back({x, y, r, score * Evidence(r)});
       }
     }
   }
@@ -274,11 +282,15 @@ std::optional<BallCircle> FindBall(const ImageRgb8& picture) {
   const double to_fine = coarse.step / fine.step;
   BallCircle found;
   for (std::size_t i = 0; i < tried; ++i) {
-    BallCircle c = Refine(coarse, best[i], cap);
+    BallCircle c = best[i];
+    c.contrast /= Evidence(c.radius);
+    c = Refine(coarse, c, cap);
     c = {c.x * to_fine, c.y * to_fine, c.radius * to_fine, 0};
     c.contrast = Score(fine, c.x, c.y, c.radius, 12 * fine_mean);
     c = Refine(fine, c, 12 * fine_mean);
-    if (c.contrast > found.contrast) found = c;
+    if (c.contrast * Evidence(c.radius) > found.contrast * Evidence(std::max(found.radius, 1.0))) {
+      found = c;
+    }
   }
   found.contrast /= double(fine_mean);
   if (found.contrast < kLeastBallContrast) return std::nullopt;

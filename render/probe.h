@@ -19,11 +19,11 @@ namespace lorgnette {
 // Outline of the ball in a picture, pixels.
 struct BallCircle {
   double x = 0, y = 0, radius = 0;
-  // Jump of brightness along it beside the picture's mean gradient; a ball has more than
-  // kLeastContrast.
+  // Jump of brightness across it, less that along it, in units of the picture's mean gradient.
   double contrast = 0;
 };
-inline constexpr double kLeastBallContrast = 1.6;
+// Photographs of a ball have 1.1 and more, portraits 0.9 at most.
+inline constexpr double kLeastBallContrast = 1;
 // The best circle that shows at least 60 per cent of itself; nullopt when none stands out.
 std::optional<BallCircle> FindBall(const ImageRgb8& picture);
 

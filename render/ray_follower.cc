@@ -201,6 +201,12 @@ Eigen::Vector3f RayFollower::Miss(const Eigen::Vector3f& origin, const Eigen::Ve
   return EnvironmentLight(direction);
 }
 
+bool RayFollower::follows_ghosts(std::size_t lens) const {
+  return NormalReflectance(looks_[lens].front, index_[lens])
+             .cwiseProduct(NormalReflectance(looks_[lens].back, index_[lens]))
+             .maxCoeff() >= kLeastGhost;
+}
+
 std::optional<RayFollower::Entry> RayFollower::FirstGlass(const Ray& ray) const {
   std::optional<Entry> nearest;
   for (std::size_t i = 0; i < head_.lenses.size(); ++i) {

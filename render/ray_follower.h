@@ -35,6 +35,10 @@ class RayFollower {
   // Coats and tint of a lens as they are drawn.
   const LensLook& look(std::size_t lens) const { return looks_[lens]; }
 
+  // Whether a second internal reflection of this lens carries enough to be followed at every pixel.
+  static constexpr float kLeastGhost = 0.01f;
+  bool follows_ghosts(std::size_t lens) const;
+
   // First glass on a ray of head space that starts outside.
   struct Entry {
     std::size_t lens;

@@ -451,11 +451,14 @@ void TileRenderer::Trace(std::vector<CameraSample>& samples, std::uint8_t conten
   const std::uint8_t lens_bits[2] = {kTileRightLens, kTileLeftLens};
   for (std::size_t lens = 0; lens < head_.lenses.size(); ++lens) {
     if (!(content & lens_bits[lens])) continue;
-    if (follower_.effects(lens)[Effect::kRefraction] &&
+    const EffectSet& on = follower_.effects(lens);
+    const bool ghosts = on[Effect::kBounces] && follower_.follows_ghosts(lens);
+    if (on[Effect::kRefraction] && !ghosts &&
         (content & (kTileRightLens | kTileLeftLens)) == lens_bits[lens]) {
       TraceLens(lens, batch, samples, pixels);
     } else {
-      // Both lenses in one tile, or rays that pass unbent: seldom, and not worth a batch.
+      // Both lenses in one tile, rays that pass unbent, ghosts of mirrors: seldom, and not worth a
+      // batch.
       std::fill(batch.lens_of.begin(), batch.lens_of.end(), std::uint8_t(3));
     }
   }
