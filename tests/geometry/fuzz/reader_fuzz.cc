@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // libFuzzer target of the readers of frame files. LG_FUZZ_READER chooses one (0 OBJ, 1 PLY, 2 STL,
 // 3 glTF, 4 OMA, 5 frame parameters, 6 MTL); without it the first byte of the input does, and the
-// rest is the file. A reader may refuse anything; it must not crash, read outside its bytes or loop.
+// rest is the file. A reader may refuse anything; it must not crash, read outside its bytes or
+// loop.
 //   clang++ -fsanitize=fuzzer,address ... tests/geometry/fuzz/reader_fuzz.cc, then run it on a
 //   corpus
 #include <cstddef>
