@@ -172,7 +172,8 @@ TEST_F(ProgramTest, IndexAloneTakesTheNearestMediumsDensityAndMinima) {
   EXPECT_EQ(named["center_thickness_mm"], 2);
   // A trade name is the index at the e line.
   const auto e = Run({"measure", "--sphere", "-6", "--index-e", "1.6", "--abbe", "41"}).Json();
-  EXPECT_NEAR(e["order"]["index"], 1.594, 1.5e-3);
+  // Two-term dispersion: catalogues say 1.594 to 1.597.
+  EXPECT_NEAR(e["order"]["index"], 1.5955, 2e-3);
   EXPECT_NEAR(e["order"]["index_e"], 1.6, 1e-12);
 }
 
@@ -298,7 +299,8 @@ TEST_F(ProgramTest, MultifocalsAndPairsAreWithinReach) {
                          "54", "--svg", Path("m.svg"), "--json"});
     ASSERT_EQ(ran.code, kExitOk) << front << ran.err;
     bool added = false;
-    for (const auto& row : ran.Json()["certificate"]) {
+    const auto json = ran.Json();
+    for (const auto& row : json["certificate"]) {
       added = added || std::string(row["quantity"]).find("addition") == 0;
     }
     EXPECT_TRUE(added) << front;
