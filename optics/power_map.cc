@@ -18,12 +18,18 @@ namespace {
 using Eigen::Vector2d;
 using Eigen::Vector3d;
 
+// So many rays are traced at a time, in the same small buffers: a fresh page costs more than a ray.
+constexpr std::size_t kChunk = 1024;
+
 // Rays from the centre of rotation outward, and what the kernel says of them.
 struct OutwardRays {
-  explicit OutwardRays(std::size_t count)
-      : n(count), in(6 * n), exit(6 * n), first(6 * n), inside(6 * n), status(n) {}
+  void Resize(std::size_t count) {
+    n = count;
+    for (std::vector<double>* v : {&in, &exit, &first, &inside}) v->resize(6 * n);
+    status.resize(n);
+  }
 
-  std::size_t n;
+  std::size_t n = 0;
   std::vector<double> in, exit, first, inside;
   std::vector<std::uint8_t> status;
 
@@ -82,67 +88,71 @@ PowerMap MakePowerMap(const Lens& lens, double index, const PowerMapOptions& opt
     }
   }
 
-  OutwardRays rays(used.size());
-  for (std::size_t k = 0; k < used.size(); ++k) {
-    const Vector3d d = Vector3d(tangents[k].x(), tangents[k].y(), -1).normalized();
-    const double values[] = {eye.rotation_center.x(),
-                             eye.rotation_center.y(),
-                             eye.rotation_center.z(),
-                             d.x(),
-                             d.y(),
-                             d.z()};
-    for (std::size_t f = 0; f < 6; ++f) rays.in[f * rays.n + k] = values[f];
-  }
-  rays.Trace(lens, index);
-  OutwardRays rays_f(0), rays_c(0);
-  if (options.lateral_colour) {
-    const double d_line = IndexAt(lens.medium, kLineD_nm);
-    rays_f = rays;
-    rays_f.Trace(lens, index + IndexAt(lens.medium, kLineF_nm) - d_line);
-    rays_c = rays;
-    rays_c.Trace(lens, index + IndexAt(lens.medium, kLineC_nm) - d_line);
-  }
-
   const Eigen::Matrix2d paraxial = ParaxialAngles(lens, index, options.stop_mm);
-  for (std::size_t k = 0; k < used.size(); ++k) {
-    MapPoint& point = map.points[used[k]];
-    point.status = RayStatus(rays.status[k]);
-    if (point.status != RayStatus::kOk) continue;
-    const Vector3d gaze = rays.Direction(rays.in, k);
-
-    LensTrace forward;
-    forward.status = RayStatus::kOk;
-    forward.first.point = rays.Point(rays.exit, k);
-    forward.second.point = rays.Point(rays.first, k);
-    forward.inside_direction = -rays.Direction(rays.inside, k);
-    forward.exit = {forward.second.point, -gaze};
-    const Ray object{forward.first.point, -rays.Direction(rays.exit, k)};
-    const auto exit =
-        WavefrontThrough(lens, index, forward, SphericalWave(object, -1000 / options.object_mm));
-    if (!exit) {
-      point.status = RayStatus::kMissesSurface;
-      continue;
+  OutwardRays rays, rays_f, rays_c;
+  for (std::size_t begin = 0; begin < used.size(); begin += kChunk) {
+    rays.Resize(std::min(kChunk, used.size() - begin));
+    for (std::size_t k = 0; k < rays.n; ++k) {
+      const Vector2d& tangent = tangents[begin + k];
+      const Vector3d d = Vector3d(tangent.x(), tangent.y(), -1).normalized();
+      const double values[] = {eye.rotation_center.x(),
+                               eye.rotation_center.y(),
+                               eye.rotation_center.z(),
+                               d.x(),
+                               d.y(),
+                               d.z()};
+      for (std::size_t f = 0; f < 6; ++f) rays.in[f * rays.n + k] = values[f];
     }
-    const double to_center = (eye.rotation_center - forward.exit.origin).dot(-gaze);
-    const Wavefront sphere = Propagated(*exit, to_center - options.stop_mm, 1);
-    const Eigen::Matrix<double, 3, 2> across = ListingRotation(gaze).leftCols<2>();
-    const Eigen::Matrix2d vergence = across.transpose() * sphere.vergence_D * across;
-    point.power = PowerVectorOfLensFrame(vergence);
-    point.front_mm = forward.first.point.head<2>();
+    rays.Trace(lens, index);
+    if (options.lateral_colour) {
+      const double d_line = IndexAt(lens.medium, kLineD_nm);
+      rays_f.Resize(rays.n);
+      rays_c.Resize(rays.n);
+      rays_f.in = rays_c.in = rays.in;
+      rays_f.Trace(lens, index + IndexAt(lens.medium, kLineF_nm) - d_line);
+      rays_c.Trace(lens, index + IndexAt(lens.medium, kLineC_nm) - d_line);
+    }
 
-    const Vector3d& leaving = forward.exit.direction;
-    const Vector2d bent = (leaving - object.direction * leaving.dot(object.direction)).head<2>();
-    const double size = bent.norm();
-    if (size > 0) point.prism = PrismBetween(object.direction, leaving) / size * bent;
+    for (std::size_t k = 0; k < rays.n; ++k) {
+      MapPoint& point = map.points[used[begin + k]];
+      point.status = RayStatus(rays.status[k]);
+      if (point.status != RayStatus::kOk) continue;
+      const Vector3d gaze = rays.Direction(rays.in, k);
 
-    const Vector2d seen = -tangents[k];  // slopes of the light, which travels +z
-    const Vector2d expected = paraxial * seen;
-    const Vector2d slope = object.direction.head<2>() / object.direction.z();
-    if (expected.norm() > 0) point.distortion = slope.dot(expected) / expected.squaredNorm() - 1;
-    if (options.lateral_colour && RayStatus(rays_f.status[k]) == RayStatus::kOk &&
-        RayStatus(rays_c.status[k]) == RayStatus::kOk) {
-      point.lateral_colour =
-          PrismBetween(rays_f.Direction(rays_f.exit, k), rays_c.Direction(rays_c.exit, k));
+      LensTrace forward;
+      forward.status = RayStatus::kOk;
+      forward.first.point = rays.Point(rays.exit, k);
+      forward.second.point = rays.Point(rays.first, k);
+      forward.inside_direction = -rays.Direction(rays.inside, k);
+      forward.exit = {forward.second.point, -gaze};
+      const Ray object{forward.first.point, -rays.Direction(rays.exit, k)};
+      const auto exit =
+          WavefrontThrough(lens, index, forward, SphericalWave(object, -1000 / options.object_mm));
+      if (!exit) {
+        point.status = RayStatus::kMissesSurface;
+        continue;
+      }
+      const double to_center = (eye.rotation_center - forward.exit.origin).dot(-gaze);
+      const Wavefront sphere = Propagated(*exit, to_center - options.stop_mm, 1);
+      const Eigen::Matrix<double, 3, 2> across = ListingRotation(gaze).leftCols<2>();
+      const Eigen::Matrix2d vergence = across.transpose() * sphere.vergence_D * across;
+      point.power = PowerVectorOfLensFrame(vergence);
+      point.front_mm = forward.first.point.head<2>();
+
+      const Vector3d& leaving = forward.exit.direction;
+      const Vector2d bent = (leaving - object.direction * leaving.dot(object.direction)).head<2>();
+      const double size = bent.norm();
+      if (size > 0) point.prism = PrismBetween(object.direction, leaving) / size * bent;
+
+      const Vector2d seen = -tangents[begin + k];  // slopes of the light, which travels +z
+      const Vector2d expected = paraxial * seen;
+      const Vector2d slope = object.direction.head<2>() / object.direction.z();
+      if (expected.norm() > 0) point.distortion = slope.dot(expected) / expected.squaredNorm() - 1;
+      if (options.lateral_colour && RayStatus(rays_f.status[k]) == RayStatus::kOk &&
+          RayStatus(rays_c.status[k]) == RayStatus::kOk) {
+        point.lateral_colour =
+            PrismBetween(rays_f.Direction(rays_f.exit, k), rays_c.Direction(rays_c.exit, k));
+      }
     }
   }
   return map;
