@@ -30,11 +30,19 @@ Status RunTrack(TrackCommandOptions options, std::ostream& out) {
   } else if (options.pd_mm) {
     request.pd_mm = *options.pd_mm;
   }
+  if (!request.camera.empty() && request.focal_px > 0) {
+    return UsageError("--focal: got both it and --camera, want one of the two");
+  }
   LG_ASSIGN(const HeadTrack track, TrackVideo(request));
   LG_RETURN_IF_ERROR(WriteHeadTrack(track, options.output));
   out << fmt::format("{}: {} frames, {} without a face, focal length {:.0f} pixels\n",
                      options.output, track.frames.size(), track.frames_without_face(),
                      track.camera.fx);
+  if (track.iris_pd_mm > 0) {
+    out << fmt::format("PD by the irises {:.1f} +- {:.1f} mm, {:+.1f} against the {:.1f} in use\n",
+                       track.iris_pd_mm, track.iris_pd_sigma_mm, track.iris_pd_mm - track.pd_mm,
+                       track.pd_mm);
+  }
   return {};
 }
 
@@ -52,6 +60,8 @@ void AddTrackCommand(CLI::App& program, CommandContext& context) {
                      "Distance between the pupils, mm, for the prescription's (64 without either)");
   command.add_option("--focal", options->request.focal_px,
                      "Focal length of the camera, pixels (estimated if absent)");
+  command.add_option("--camera", options->request.camera,
+                     "Camera file of lorgnette calibrate, in place of --focal");
   command.add_option("--frames", options->frames, "Part of the clip, A:B, first and last frame");
   command.add_option("--models", options->request.model_dir, "Folder of the face networks");
   command.footer(

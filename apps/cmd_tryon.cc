@@ -50,6 +50,10 @@ Status ApplyNudge(const std::vector<double>& nudge, FitOptions& fit) {
 Status RunTryonCommand(TryonCommandOptions options, std::ostream& out) {
   TryonRequest& request = options.request;
   LG_ASSIGN(request.frames, ParseFrameRange(options.frames));
+  if (!request.camera.empty() && (request.focal_px > 0 || !request.track.empty())) {
+    return UsageError(fmt::format("--camera: got it with {}, want one of the two",
+                                  request.track.empty() ? "--focal" : "--track"));
+  }
   LG_RETURN_IF_ERROR(ApplyNudge(options.nudge, request.fit));
   CompositorOptions& compositor = request.compositor;
   if (compositor.samples_per_side < 1 || compositor.samples_per_side > kMaxSamplesPerSide) {
@@ -127,6 +131,8 @@ void AddTryonCommand(CLI::App& program, CommandContext& context) {
                   "then turns about them in degrees")
       ->delimiter(',');
   command.add_option("--focal", request.focal_px, "Focal length, pixels (estimated if absent)");
+  command.add_option("--camera", request.camera,
+                     "Camera file of lorgnette calibrate, in place of --focal");
   command.add_option("--models", request.model_dir, "Folder of the face networks");
   command.footer(
       "Examples:\n"

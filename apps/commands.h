@@ -20,6 +20,7 @@ struct CommandContext {
 
 void AddTryonCommand(CLI::App& program, CommandContext& context);
 void AddTrackCommand(CLI::App& program, CommandContext& context);
+void AddCalibrateCommand(CLI::App& program, CommandContext& context);
 void AddLensCommand(CLI::App& program, CommandContext& context);
 void AddMeasureCommand(CLI::App& program, CommandContext& context);
 void AddFramesCommand(CLI::App& program, CommandContext& context);

@@ -42,6 +42,7 @@ int RunProgram(int argc, const char* const* argv, std::ostream& out, std::ostrea
   CommandContext context{out, {}};
   AddTryonCommand(program, context);
   AddTrackCommand(program, context);
+  AddCalibrateCommand(program, context);
   AddLensCommand(program, context);
   AddMeasureCommand(program, context);
   AddFramesCommand(program, context);

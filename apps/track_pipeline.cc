@@ -3,13 +3,63 @@
 
 #include <cstdlib>
 #include <filesystem>
+#include <thread>
 
+#include "apps/camera_choice.h"
+#include "apps/frame_queue.h"
 #include "base/progress.h"
 #include "cmake/source_dir.h"
 #include "render/video_io.h"
 #include "tracking/tracker.h"
 
 namespace lorgnette {
+namespace {
+
+constexpr std::size_t kFramesInFlight = 4;
+
+// Decodes the frames of a range (and rectifies them) on a thread of its own.
+class DecodingThread {
+ public:
+  DecodingThread(VideoReader& reader, const FrameRange& range,
+                 const std::optional<PictureRectifier>& rectifier)
+      : queue_(kFramesInFlight), thread_([this, &reader, &range, &rectifier] {
+          for (; number_ <= range.last; ++number_) {
+            auto frame = reader.Next();
+            if (!frame) {
+              status_ = tl::unexpected(frame.error());
+              break;
+            }
+            if (!*frame) break;
+            if (!range.Contains(number_)) continue;
+            if (rectifier) (*frame)->rgb = rectifier->Rectified((*frame)->rgb);
+            (*frame)->original.reset();
+            if (!queue_.Push(**std::move(frame))) break;
+          }
+          queue_.End();
+        }) {}
+  ~DecodingThread() {
+    queue_.Close();
+    if (thread_.joinable()) thread_.join();
+  }
+  DecodingThread(const DecodingThread&) = delete;
+  DecodingThread& operator=(const DecodingThread&) = delete;
+
+  std::optional<VideoFrame> Next() { return queue_.Pop(); }
+  // After the last frame: whether the video ended well, and how many frames were read.
+  Status Finish() {
+    thread_.join();
+    return status_;
+  }
+  long number() const { return number_; }
+
+ private:
+  FrameQueue<VideoFrame> queue_;
+  Status status_;
+  long number_ = 0;
+  std::thread thread_;  // last: it uses the others
+};
+
+}  // namespace
 
 std::string DefaultModelDirectory() {
   namespace fs = std::filesystem;
@@ -30,19 +80,25 @@ Result<HeadTrack> TrackVideo(const TrackRequest& request) {
   options.model_dir = request.model_dir.empty() ? DefaultModelDirectory() : request.model_dir;
   options.pd_mm = request.pd_mm;
   options.focal_px = request.focal_px;
+  LG_ASSIGN(const std::optional<CalibratedCamera> camera,
+            CameraForVideo(request.camera, reader.info().width, reader.info().height));
+  std::optional<PictureRectifier> rectifier;
+  if (camera) {
+    options.camera = camera->camera;
+    rectifier = RectifierFor(camera->camera, camera->distortion);
+  }
   LG_ASSIGN(Tracker tracker, Tracker::Create(options));
   Progress progress("tracking", "frames", request.frames.Count(reader.info().frame_count));
-  long number = 0, taken = 0;
-  for (; number <= request.frames.last; ++number) {
-    LG_ASSIGN(const std::optional<VideoFrame> frame, reader.Next());
-    if (!frame) break;
-    if (!request.frames.Contains(number)) continue;
+  long taken = 0;
+  DecodingThread decoding(reader, request.frames, rectifier);
+  while (const std::optional<VideoFrame> frame = decoding.Next()) {
     LG_RETURN_IF_ERROR(tracker.Add(frame->rgb, frame->time_s));
     progress.Update(++taken);
   }
+  LG_RETURN_IF_ERROR(decoding.Finish());
   if (taken == 0) {
-    return UsageError("--frames: " + request.video + " has only " + std::to_string(number) +
-                      " frames");
+    return UsageError("--frames: " + request.video + " has only " +
+                      std::to_string(decoding.number()) + " frames");
   }
   auto track = tracker.Finish();
   if (!track) {
@@ -51,6 +107,7 @@ Result<HeadTrack> TrackVideo(const TrackRequest& request) {
     if (message.starts_with("video: ")) message = request.video + message.substr(5);
     return tl::unexpected(Error{message, track.error().kind});
   }
+  if (camera) track->distortion = camera->distortion;
   return track;
 }
 

@@ -16,6 +16,7 @@ struct TrackRequest {
   FrameRange frames;
   double pd_mm = 64;
   double focal_px = 0;  // 0: estimated
+  std::string camera;   // camera file; empty: not calibrated
 };
 
 // One TrackedFrame for each frame of the range, in order.

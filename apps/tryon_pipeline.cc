@@ -11,6 +11,7 @@
 #include <cmath>
 #include <filesystem>
 
+#include "apps/camera_choice.h"
 #include "apps/rx_file.h"
 #include "apps/still_choice.h"
 #include "apps/track_pipeline.h"
@@ -143,6 +144,7 @@ Result<HeadTrack> GetTrack(const TryonRequest& request, const VideoInfo& video,
     tracking.frames = request.frames;
     tracking.pd_mm = rx.pd_mm();
     tracking.focal_px = request.focal_px;
+    tracking.camera = request.camera;
     return TrackVideo(tracking);
   }
   LG_ASSIGN(HeadTrack track, ReadHeadTrack(request.track));
@@ -207,6 +209,7 @@ class Assembly {
         lookup_(track, reader.info().frame_rate),
         chosen_(ChooseStills(track, request.stills)),
         result_(result),
+        rectifier_(RectifierFor(track.camera, track.distortion)),
         progress_("rendering", "frames", static_cast<long>(track.frames.size())) {}
 
   Status Run() {
@@ -265,7 +268,10 @@ class Assembly {
     const Timer timer(result_.seconds.render);
     if (!job.tracked->vertices.empty()) compositor_.UpdateFace(job.tracked->vertices);
     if (request_.stills_beside_input && IsStill(job)) job.input = job.frame.rgb;
-    const ImageRgbF input = LinearFromDisplay(job.frame.rgb);
+    // Glasses are drawn into the pinhole's picture and brought back into the lens's.
+    ImageRgb8 rectified;
+    if (rectifier_) rectified = rectifier_->Rectified(job.frame.rgb);
+    const ImageRgbF input = LinearFromDisplay(rectifier_ ? rectified : job.frame.rgb);
     if (!exposed_) {
       result_.environment_scale =
           compositor_.MatchExposure(input, track_.camera, job.tracked->camera_from_head);
@@ -283,7 +289,9 @@ class Assembly {
     result_.counts.frame_pixels += counts.frame_pixels;
     result_.counts.shadowed_pixels += counts.shadowed_pixels;
     result_.counts.filled_samples += counts.filled_samples;
-    job.frame.rgb = DisplayFromLinear(output);
+    ImageRgb8 drawn = DisplayFromLinear(output);
+    job.frame.rgb =
+        rectifier_ ? rectifier_->WithChanges(job.frame.rgb, rectified, drawn) : std::move(drawn);
   }
 
   void CountEffects(const EffectPlan& plan) {
@@ -333,6 +341,7 @@ class Assembly {
   TrackLookup lookup_;
   std::vector<long> chosen_;
   TryonResult& result_;
+  std::optional<PictureRectifier> rectifier_;
   Progress progress_;
   long number_ = 0;
   bool exposed_ = false;
@@ -391,7 +400,10 @@ Result<TryonResult> RunTryon(const TryonRequest& request) {
                                [](const TrackedFrame& f) { return f.found; });
   if (!any) return Failure(request.track + ": no frame shows a face");
   result.camera = track.camera;
+  result.distortion = track.distortion;
   result.pd_mm = track.pd_mm;
+  result.iris_pd_mm = track.iris_pd_mm;
+  result.iris_pd_sigma_mm = track.iris_pd_sigma_mm;
   SummarizePoses(track, result);
   if (from_face) {
     LG_ASSIGN(environment, LitLikeTheFace(request, track, result));

@@ -28,6 +28,7 @@ struct TryonRequest {
   FrameRange frames;
   std::optional<double> pd_mm;  // in place of the prescription's
   double focal_px = 0;          // for tracking; 0: estimated
+  std::string camera;           // camera file, for tracking; empty: not calibrated
   int stills = 0;
   bool stills_beside_input = false;
   CompositorOptions compositor;
@@ -57,8 +58,9 @@ struct TryonResult {
   int width = 0, height = 0;
   bool has_audio = false;
   Camera camera;
-  double pd_mm = 0;
-  HeadAngles least, greatest;  // over the frames with a face
+  LensDistortion distortion;
+  double pd_mm = 0, iris_pd_mm = 0, iris_pd_sigma_mm = 0;  // HeadTrack's
+  HeadAngles least, greatest;                              // over the frames with a face
   double mean_residual_px = 0;
   std::string environment;  // what lit the scene
   double environment_scale = 1;

@@ -43,6 +43,13 @@ Json VideoJson(const TryonResult& r) {
   const auto range = [&](double HeadAngles::*angle) {
     return Json{r.least.*angle, r.greatest.*angle};
   };
+  const LensDistortion& d = r.distortion;
+  Json iris;  // null where the irises were not seen
+  if (r.iris_pd_mm > 0) {
+    iris = {{"pd_mm", r.iris_pd_mm},
+            {"sigma_mm", r.iris_pd_sigma_mm},
+            {"minus_prescribed_mm", r.iris_pd_mm - r.pd_mm}};
+  }
   return {{"input", r.request.video},
           {"output", r.request.output},
           {"width", r.width},
@@ -55,7 +62,9 @@ Json VideoJson(const TryonResult& r) {
           {"pitch_deg", range(&HeadAngles::pitch)},
           {"roll_deg", range(&HeadAngles::roll)},
           {"focal_px", r.camera.fx},
+          {"distortion", {d.k1, d.k2, d.p1, d.p2, d.k3}},
           {"pd_mm", r.pd_mm},
+          {"iris_pd", iris},
           {"residual_px", r.mean_residual_px},
           {"stills", r.stills}};
 }

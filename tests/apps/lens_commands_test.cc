@@ -18,7 +18,8 @@ constexpr char kTable1[] = LORGNETTE_SOURCE_DIR "/data/prescriptions/table1.json
 TEST_F(ProgramTest, VersionAndHelpSucceed) {
   EXPECT_EQ(Run({"--version"}).out, std::string("lorgnette ") + ProgramVersion() + "\n");
   EXPECT_EQ(Run({"--help"}).code, kExitOk);
-  for (const char* command : {"tryon", "track", "lens", "measure", "frames", "compose"}) {
+  for (const char* command :
+       {"tryon", "track", "calibrate", "lens", "measure", "frames", "compose"}) {
     const Ran ran = Run({command, "--help"});
     EXPECT_EQ(ran.code, kExitOk) << command;
     EXPECT_THAT(ran.out, HasSubstr("Examples:")) << command;
