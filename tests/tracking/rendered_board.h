@@ -3,6 +3,7 @@
 #pragma once
 
 #include <Eigen/Geometry>
+#include <algorithm>
 #include <cmath>
 #include <vector>
 
@@ -57,14 +58,21 @@ class BoardPainter {
   }
 
  private:
-  static constexpr int kFine = 3;  // samples a pixel along each side
+  static constexpr int kFine = 2;  // samples a pixel along each side
+  // Plus and minus one by turns, with edges as soft as a pixel is wide.
+  static double Wave(double t) {
+    constexpr double kSoft = 0.03;
+    const double off = t - std::round(t);
+    const double side = std::clamp(off / kSoft, -1.0, 1.0);
+    return int(std::round(t)) % 2 == 0 ? side : -side;
+  }
   // Squares surround the inner corners; a white margin surrounds the squares.
   int Shade(double column, double row) const {
     const bool outside = column < -1 || row < -1 || column > board_.columns || row > board_.rows;
     const bool paper =
         column > -2 && row > -2 && column < board_.columns + 1 && row < board_.rows + 1;
     if (outside) return paper ? 225 : 90;
-    return (int(std::floor(column)) + int(std::floor(row))) % 2 == 0 ? 30 : 225;
+    return int(127.5 - 97.5 * Wave(column) * Wave(row));
   }
 
   Camera camera_;
