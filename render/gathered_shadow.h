@@ -29,7 +29,7 @@ struct GatherScene {
   const HeadLight& light;                          // of those directions
   // Radiance of the face's vertices in the picture, and of the frame's corners, three a triangle.
   const std::vector<Eigen::Vector3f>& face_radiance;
-  std::vector<Eigen::Vector3f> frame_radiance;
+  std::vector<Eigen::Vector3f> frame_radiance = {};
   // Light through the lenses; without lenses they are passed as if they were absent.
   const std::vector<LensSolid>* lenses = nullptr;
   const std::vector<LensLook>* looks = nullptr;
