@@ -56,9 +56,10 @@ void ReadDirectory(const TiffBlock& tiff, std::size_t at, int depth, ExposureTag
 }  // namespace
 
 Result<std::optional<ExposureTags>> ReadExposureTags(const std::string& path) {
-  LG_ASSIGN(const std::string content, ReadFile(path));
-  const std::string_view bytes = content;
-  if (bytes.substr(0, 2) != "\xFF\xD8") return std::optional<ExposureTags>();
+  const Result<std::string> content = ReadFile(path);
+  if (!content) return tl::unexpected(content.error());
+  const std::string_view bytes = *content;
+  if (!bytes.starts_with("\xFF\xD8")) return std::optional<ExposureTags>();
   // Segments until the picture's data start.
   for (std::size_t at = 2; at + 4 <= bytes.size() && std::uint8_t(bytes[at]) == 0xFF;) {
     const std::uint8_t marker = std::uint8_t(bytes[at + 1]);
