@@ -21,7 +21,8 @@ constexpr int kGrid = 14;  // samples of a lens along each side of its box
 // Samples stand for what lies between them.
 constexpr double kShiftMargin = 1.15, kRadianceMargin = 1.25;
 constexpr double kDarkMargin = 0.5;  // pixels between the samples may be darker than they
-// Processor time of a lens sample with the effect, ns (render_bench, AVX2); docs/rendering.md.
+// Processor time of a lens sample with the effect, ns: rough figures, not measured by effect;
+// they tell cheap from dear and decide nothing.
 constexpr double kRay_ns = 260, kExactRay_ns = 2600;
 
 // What the samples of one lens say.

@@ -48,7 +48,7 @@ struct EffectDecision {
   Effect effect = Effect::kRefraction;
   EffectRegion region = EffectRegion::kRest;
   double shift_px = 0, code_values = 0;  // estimates of the largest change
-  double cost_ms = 0;                    // processor time of this picture, about
+  double cost_ms = 0;                    // processor time of this picture, a rough figure
   bool on = true;
   std::string reason;
 };

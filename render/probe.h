@@ -22,7 +22,7 @@ struct BallCircle {
   // Jump of brightness across it, less that along it, in units of the picture's mean gradient.
   double contrast = 0;
 };
-// Photographs of a ball have 1.1 and more, portraits 0.9 at most.
+// Three photographs of one ball have 1.13 and more, a portrait without one has 0.7.
 inline constexpr double kLeastBallContrast = 1;
 // The best circle that shows at least 60 per cent of itself; nullopt when none stands out.
 std::optional<BallCircle> FindBall(const ImageRgb8& picture);
