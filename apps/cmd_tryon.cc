@@ -11,6 +11,7 @@
 #include "apps/effect_options.h"
 #include "apps/lens_options.h"
 #include "apps/tryon_pipeline.h"
+#include "render/quality.h"
 
 namespace lorgnette {
 namespace {
@@ -18,7 +19,8 @@ namespace {
 struct TryonCommandOptions {
   TryonRequest request;
   std::string frames;
-  std::string shadow = "baked";
+  std::string quality, shadow;  // empty: the compositor's defaults
+  std::optional<int> samples;
   bool no_refraction = false, no_reflection = false, no_shadow = false;
   EffectOptions effects;
   std::vector<double> nudge;
@@ -56,6 +58,11 @@ Status RunTryonCommand(TryonCommandOptions options, std::ostream& out) {
   }
   LG_RETURN_IF_ERROR(ApplyNudge(options.nudge, request.fit));
   CompositorOptions& compositor = request.compositor;
+  if (const QualityPreset* preset = FindQuality(options.quality)) ApplyQuality(*preset, compositor);
+  if (options.samples) {
+    compositor.samples_per_side = *options.samples;
+    compositor.adaptive = false;
+  }
   if (compositor.samples_per_side < 1 || compositor.samples_per_side > kMaxSamplesPerSide) {
     return UsageError(fmt::format("--samples: got {}, want 1..{}", compositor.samples_per_side,
                                   kMaxSamplesPerSide));
@@ -72,9 +79,11 @@ Status RunTryonCommand(TryonCommandOptions options, std::ostream& out) {
       without(effect);
     }
   }
-  compositor.shadow = options.no_shadow           ? ShadowMode::kNone
-                      : options.shadow == "paper" ? ShadowMode::kPaper
-                                                  : ShadowMode::kBaked;
+  if (options.no_shadow) {
+    compositor.shadow = ShadowMode::kNone;
+  } else if (!options.shadow.empty()) {
+    compositor.shadow = options.shadow == "paper" ? ShadowMode::kPaper : ShadowMode::kBaked;
+  }
   LG_ASSIGN(const TryonResult result, RunTryon(request));
   out << fmt::format("{}: {} frames, {} without a face, {:.1f} s\n", request.output, result.frames,
                      result.frames_without_face, result.seconds.wall);
@@ -111,9 +120,16 @@ void AddTryonCommand(CLI::App& program, CommandContext& context) {
   command.add_flag("--no-refraction", options->no_refraction, "Leave out refraction");
   command.add_flag("--no-reflection", options->no_reflection, "Leave out reflection");
   command.add_flag("--no-shadow", options->no_shadow, "Leave out the shadow");
-  command.add_option("--shadow", options->shadow, "Shadow: baked (fast) or paper (Algorithm 1)")
-      ->check(CLI::IsMember({"baked", "paper"}))
-      ->capture_default_str();
+  std::vector<std::string> presets;
+  for (const QualityPreset& preset : QualityPresets()) presets.emplace_back(preset.name);
+  command
+      .add_option("--quality", options->quality,
+                  "Samples, directions of light and bounces by name; options below go before it")
+      ->check(CLI::IsMember(presets));
+  command
+      .add_option("--shadow", options->shadow,
+                  "Shadow: baked (fast; the default) or paper (Algorithm 1)")
+      ->check(CLI::IsMember({"baked", "paper"}));
   command
       .add_option("--medium", options->medium,
                   "Lens material: CR-39, crown, Trivex, polycarbonate, 1.60, 1.67, 1.74")
@@ -121,10 +137,7 @@ void AddTryonCommand(CLI::App& program, CommandContext& context) {
   command.add_option("--index", options->index, "Refractive index, for the material's");
   command.add_option("--pd", request.pd_mm,
                      "Distance between the pupils, mm, for the prescription's");
-  command
-      .add_option("--samples", request.compositor.samples_per_side,
-                  "Samples a pixel along each side")
-      ->capture_default_str();
+  command.add_option("--samples", options->samples, "Samples a pixel along each side (2)");
   command
       .add_option("--nudge", options->nudge,
                   "Move the glasses after the fit: X,Y,Z in mm (wearer's left, up, forward), "

@@ -19,11 +19,12 @@ namespace {
 
 struct ValidateOptions {
   std::string id, group, html_path;
-  bool json = false;
+  bool json = false, all = false;
 };
 
 Status Validate(const ValidateOptions& options, std::ostream& out) {
-  LG_ASSIGN(const validation::SuiteResult result, validation::RunSuite(options.id, options.group));
+  LG_ASSIGN(const validation::SuiteResult result,
+            validation::RunSuite(options.id, options.group, options.all));
   out << (options.json ? validation::JsonReport(result) : validation::TextTable(result));
   if (!options.html_path.empty()) {
     LG_RETURN_IF_ERROR(WriteFileAtomically(options.html_path, validation::HtmlReport(result)));
@@ -43,6 +44,7 @@ void AddValidateCommand(CLI::App& program, CommandContext& context) {
   const auto options = std::make_shared<ValidateOptions>();
   command.add_option("--case", options->id, "Only this case, as V012");
   command.add_option("--group", options->group, "Only this group, as magnification");
+  command.add_flag("--all", options->all, "Also the slow cases: path-traced pictures");
   command.add_flag("--json", options->json, "Print the report as JSON");
   command.add_option("--html", options->html_path, "Also write a page that needs no network");
   command.footer(

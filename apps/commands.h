@@ -27,6 +27,7 @@ void AddFramesCommand(CLI::App& program, CommandContext& context);
 void AddComposeCommand(CLI::App& program, CommandContext& context);
 void AddProbeCommand(CLI::App& program, CommandContext& context);
 void AddValidateCommand(CLI::App& program, CommandContext& context);
+void AddCostCommand(CLI::App& program, CommandContext& context);
 void AddServeCommand(CLI::App& program, CommandContext& context);
 
 }  // namespace lorgnette

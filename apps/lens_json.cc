@@ -5,6 +5,7 @@
 #include <nlohmann/json.hpp>
 
 #include "optics/media.h"
+#include "validation/backing.h"
 
 namespace lorgnette {
 namespace {
@@ -86,7 +87,8 @@ Json CertificateJson(const Certificate& certificate) {
                     {"tolerance", Number(m.tolerance)},
                     {"numerical_error", Number(m.numerical_error)},
                     {"passed", m.passed()},
-                    {"source", m.source}});
+                    {"source", m.source},
+                    {"backed_by", validation::CasesBacking(m.quantity)}});
   }
   return rows;
 }

@@ -49,6 +49,7 @@ int RunProgram(int argc, const char* const* argv, std::ostream& out, std::ostrea
   AddComposeCommand(program, context);
   AddProbeCommand(program, context);
   AddValidateCommand(program, context);
+  AddCostCommand(program, context);
   AddServeCommand(program, context);
 
   std::vector<std::string> arguments(argv + std::min(argc, 1), argv + argc);

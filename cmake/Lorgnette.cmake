@@ -44,7 +44,7 @@ if(LORGNETTE_PCH)
   target_compile_options(lorgnette_options INTERFACE -Wno-restrict)
   find_package(Eigen3 REQUIRED)
   find_package(fmt REQUIRED)
-  file(WRITE "${PROJECT_BINARY_DIR}/precompiled.cc" "")
+  file(CONFIGURE OUTPUT "${PROJECT_BINARY_DIR}/precompiled.cc" CONTENT "")  # keeps an old one
   foreach(kind library tests)
     add_library(lorgnette_pch_${kind} OBJECT "${PROJECT_BINARY_DIR}/precompiled.cc")
     target_link_libraries(lorgnette_pch_${kind} PRIVATE Eigen3::Eigen fmt::fmt lorgnette_options)

@@ -77,8 +77,8 @@ Result<HeadScene> HeadScene::Build(const Eyewear& eyewear, const TriangleMesh& f
       }
     }
   }
-  if (options.samples_per_side < 1 || options.samples_per_side > 16) {
-    return UsageError(fmt::format("samples a side: got {}, want 1..16", options.samples_per_side));
+  if (options.samples_per_side < 1 || options.samples_per_side > 32) {
+    return UsageError(fmt::format("samples a side: got {}, want 1..32", options.samples_per_side));
   }
   if (options.shadow_directions < 16 || options.shadow_directions % 16 != 0) {
     return UsageError(

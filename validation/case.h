@@ -66,6 +66,7 @@ struct Case {
   const char* title;   // what is computed
   const char* source;  // publication or derivation
   void (*run)(CaseRun&);
+  bool slow = false;  // seconds, not milliseconds: left out unless asked for
 };
 
 // Every case, by rising number. Made at configure time from the file names in validation/cases/:

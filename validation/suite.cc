@@ -38,11 +38,15 @@ std::string Digits(const CaseRun& run) {
 
 }  // namespace
 
-Result<SuiteResult> RunSuite(const std::string& id, const std::string& group) {
+Result<SuiteResult> RunSuite(const std::string& id, const std::string& group, bool slow) {
   SuiteResult result;
   for (const Case* definition : AllCases()) {
     if (!id.empty() && id != definition->id) continue;
     if (!group.empty() && group != definition->group) continue;
+    if (definition->slow && !slow && id.empty()) {
+      ++result.left_out;
+      continue;
+    }
     CaseResult one{definition, {}, 0};
     const auto start = std::chrono::steady_clock::now();
     definition->run(one.run);
@@ -56,7 +60,7 @@ Result<SuiteResult> RunSuite(const std::string& id, const std::string& group) {
     }
     result.cases.push_back(std::move(one));
   }
-  if (result.cases.empty()) {
+  if (result.cases.empty() && result.left_out == 0) {
     return UsageError(fmt::format(
         "--case/--group: no validation case matches case '{}', group '{}'; cases run from {} to {}",
         id, group, AllCases().front()->id, AllCases().back()->id));
@@ -81,6 +85,7 @@ std::string TextTable(const SuiteResult& result) {
   }
   text += fmt::format("{} passed, {} failed, {} skipped\n", result.passed, result.failed,
                       result.skipped);
+  if (result.left_out > 0) text += fmt::format("{} slow cases left out (--all)\n", result.left_out);
   return text;
 }
 
@@ -112,6 +117,7 @@ std::string JsonReport(const SuiteResult& result) {
   const Json report = {{"passed", result.passed},
                        {"failed", result.failed},
                        {"skipped", result.skipped},
+                       {"left_out", result.left_out},
                        {"cases", cases}};
   return report.dump(2) + "\n";
 }

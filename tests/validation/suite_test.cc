@@ -10,6 +10,9 @@
 #include <set>
 #include <string>
 
+#include "optics/certify.h"
+#include "validation/backing.h"
+
 namespace lorgnette::validation {
 namespace {
 
@@ -18,6 +21,44 @@ TEST(Suite, EveryShippedCaseHolds) {
   ASSERT_TRUE(result);
   EXPECT_EQ(result->failed, 0) << TextTable(*result);
   EXPECT_GT(result->passed, 0);
+}
+
+TEST(Suite, LeavesSlowCasesOutUnlessAsked) {
+  const auto quick = RunSuite("", "image");
+  ASSERT_TRUE(quick);
+  EXPECT_GT(quick->left_out, 0);
+  for (const CaseResult& c : quick->cases) EXPECT_FALSE(c.definition->slow);
+  EXPECT_THAT(TextTable(*quick), testing::HasSubstr("--all"));
+}
+
+// Orders that bring every line of a certificate about.
+TEST(CasesBacking, EveryQuantityOfACertificateIsBackedByCases) {
+  std::set<std::string> ids;
+  for (const Case* one : AllCases()) ids.insert(one->id);
+  LensOrder toric;
+  toric.rx.sphere = Diopters(-3);
+  toric.rx.cylinder = Diopters(-1.5);
+  toric.rx.axis = AxisDegrees(30);
+  toric.rx.prism_in = PrismDiopters(1);
+  LensOrder progressive;
+  progressive.rx.sphere = Diopters(1);
+  progressive.rx.add = Diopters(2);
+  progressive.progressive = ProgressiveOrder{};
+  int lines = 0;
+  for (const LensOrder& order : {toric, progressive}) {
+    const auto design = DesignLens(order);
+    ASSERT_TRUE(design) << design.error().message;
+    const auto lens = Certify(*design);
+    ASSERT_TRUE(lens) << lens.error().message;
+    for (const Measurement& m : lens->certificate().measurements) {
+      const auto cases = CasesBacking(m.quantity);
+      EXPECT_FALSE(cases.empty()) << m.quantity;
+      for (const std::string& id : cases) EXPECT_TRUE(ids.contains(id)) << id;
+      ++lines;
+    }
+  }
+  EXPECT_GT(lines, 12);
+  EXPECT_TRUE(CasesBacking("weather").empty());
 }
 
 TEST(Suite, NumbersRiseAndAreUnique) {

@@ -18,7 +18,7 @@ void Run(CaseRun& run) {
 }  // namespace
 
 extern const Case kV034;
-const Case kV034 = {"V034", "paraxial", "Focal length of a biconvex singlet, n 1.691",
+const Case kV034 = {"V034", "programs", "Focal length of a biconvex singlet, n 1.691",
                     "Zemax and Optiland, optiland issue 710; the index is printed with five digits",
                     Run};
 

@@ -18,7 +18,7 @@ void Run(CaseRun& run) {
 
 extern const Case kV041;
 const Case kV041 = {
-    "V041", "paraxial", "C1: -6.00 D, n 1.6, F1 +2, 1.5 mm: vertex and equivalent power",
+    "V041", "programs", "C1: -6.00 D, n 1.6, F1 +2, 1.5 mm: vertex and equivalent power",
     "derived with 30 digits; confirmed by Optiland, rayoptics, prysm, goptical", Run};
 
 }  // namespace lorgnette::validation

@@ -40,7 +40,7 @@ void Run(CaseRun& run) {
 }  // namespace
 
 extern const Case kV044;
-const Case kV044 = {"V044", "gaze", "C4: a toric lens at four gazes, in Listing-rotated axes",
+const Case kV044 = {"V044", "programs", "C4: a toric lens at four gazes, in Listing-rotated axes",
                     "derived with 30 digits; confirmed by Optiland to 8 digits", Run};
 
 }  // namespace lorgnette::validation

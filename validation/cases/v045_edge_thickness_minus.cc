@@ -1,36 +1,23 @@
 // SPDX-License-Identifier: Apache-2.0
-#include <optional>
 #include <string>
 
-#include "optics/design.h"
 #include "validation/case.h"
+#include "validation/made_lens.h"
 
 namespace lorgnette::validation {
 namespace {
 
 void Run(CaseRun& run) {
-  const auto design = [](double power, double index, double f1, double diameter,
-                         std::optional<double> thickness) {
-    LensOrder order;
-    order.rx.sphere = Diopters(power);
-    order.medium.index_d = index;
-    order.medium.density_g_cm3 = 1.30;
-    order.base_curve = Diopters(f1);
-    order.diameter_mm = diameter;
-    order.center_thickness_mm = thickness;
-    order.min_center_thickness_mm = 1;
-    return DesignLens(order);
-  };
   const double diameter[] = {50, 60, 70}, edge[] = {4.747977, 6.260804, 8.123445};
   for (int i = 0; i < 3; ++i) {
-    const auto lens = design(-6, 1.6, 2, diameter[i], 1.5);
+    const auto lens = RoundDesign(-6, 1.6, 2, diameter[i], 1.5);
     run.Rounded("-6, diameter " + std::to_string(int(diameter[i])), "mm", edge[i], 6,
                 lens ? lens->max_edge_thickness_mm : 0);
   }
-  const auto strong = design(-10, 1.74, 1, 65, 1.5);
+  const auto strong = RoundDesign(-10, 1.74, 1, 65, 1.5);
   run.Rounded("-10, n 1.74, diameter 65", "mm", 9.158094, 6,
               strong ? strong->max_edge_thickness_mm : 0);
-  const auto sixty = design(-6, 1.6, 2, 60, 1.5);
+  const auto sixty = RoundDesign(-6, 1.6, 2, 60, 1.5);
   run.Rounded("mass, diameter 60", "g", 14.098, 3, sixty ? sixty->mass_g : 0);
 }
 

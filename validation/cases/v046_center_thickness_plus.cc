@@ -1,27 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
-#include <optional>
-
-#include "optics/design.h"
 #include "validation/case.h"
+#include "validation/made_lens.h"
 
 namespace lorgnette::validation {
 namespace {
 
 void Run(CaseRun& run) {
-  const auto design = [](double power, double index, double f1, double diameter,
-                         std::optional<double> thickness) {
-    LensOrder order;
-    order.rx.sphere = Diopters(power);
-    order.medium.index_d = index;
-    order.medium.density_g_cm3 = 1.30;
-    order.base_curve = Diopters(f1);
-    order.diameter_mm = diameter;
-    order.center_thickness_mm = thickness;
-    order.min_center_thickness_mm = 1;
-    return DesignLens(order);
-  };
   const auto thickness = [&](double power, double index, double f1, double diameter) {
-    const auto lens = design(power, index, f1, diameter, std::nullopt);
+    const auto lens = RoundDesign(power, index, f1, diameter);
     return lens ? lens->lens.center_thickness_mm : 0;
   };
   run.Rounded("+4", "mm", 5.5657796, 7, thickness(4, 1.498, 8, 65));

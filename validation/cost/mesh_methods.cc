@@ -1,0 +1,189 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <fmt/format.h>
+
+#include <Eigen/Geometry>
+#include <cmath>
+#include <memory>
+
+#include "optics/trace.h"
+#include "render/embree_scene.h"
+#include "validation/cost/lens_methods.h"
+
+namespace lorgnette::validation {
+namespace {
+
+// One surface over a square around the lens, as cells of two triangles.
+Result<TriangleMesh> SurfaceMesh(const Lens& lens, bool back, double half_width_mm,
+                                 double half_height_mm, int cells) {
+  TriangleMesh mesh;
+  for (int j = 0; j <= cells; ++j) {
+    for (int i = 0; i <= cells; ++i) {
+      const double x = half_width_mm * (2.0 * i / cells - 1);
+      const double y = half_height_mm * (2.0 * j / cells - 1);
+      const Ray along{{x, y, -1}, {0, 0, 1}};
+      const auto hit = back ? IntersectBack(lens, along) : lens.front.Intersect(along);
+      if (!hit) {
+        return Failure(fmt::format("lens: a surface has ended at ({:.1f}, {:.1f}) mm", x, y));
+      }
+      mesh.positions.push_back(hit->point);
+      mesh.normals.push_back(hit->normal);
+    }
+  }
+  for (int j = 0; j < cells; ++j) {
+    for (int i = 0; i < cells; ++i) {
+      const int a = j * (cells + 1) + i, b = a + 1, c = a + cells + 1, d = c + 1;
+      mesh.triangles.emplace_back(a, b, d);
+      mesh.triangles.emplace_back(a, d, c);
+    }
+  }
+  return mesh;
+}
+
+// Normals as a renderer has them: one a facet, and one a vertex.
+struct MeshNormals {
+  std::vector<Eigen::Vector3f> facets, vertices;
+  std::vector<Eigen::Vector3i> triangles;
+  explicit MeshNormals(const TriangleMesh& mesh) : triangles(mesh.triangles) {
+    for (const Eigen::Vector3d& n : mesh.normals) vertices.push_back(n.cast<float>());
+    for (const Eigen::Vector3i& t : triangles) {
+      const Eigen::Vector3d& a = mesh.positions[std::size_t(t[0])];
+      const Eigen::Vector3d n = (mesh.positions[std::size_t(t[1])] - a)
+                                    .cross(mesh.positions[std::size_t(t[2])] - a)
+                                    .normalized();
+      facets.push_back(n.cast<float>());
+    }
+  }
+  Eigen::Vector3f At(bool flat, std::uint32_t triangle, float u, float v) const {
+    if (flat) return facets[triangle];
+    const Eigen::Vector3i& t = triangles[triangle];
+    return ((1 - u - v) * vertices[std::size_t(t[0])] + u * vertices[std::size_t(t[1])] +
+            v * vertices[std::size_t(t[2])])
+        .normalized();
+  }
+};
+
+class FacetLens {
+ public:
+  FacetLens(EmbreeScene scene, MeshNormals front, MeshNormals back, double index,
+            const CameraRays& rays)
+      : scene_(std::move(scene)),
+        front_(std::move(front)),
+        back_(std::move(back)),
+        index_(float(index)),
+        rays_(rays) {
+    for (std::size_t i = 0; i < rays.size(); ++i) {
+      if (rays.inside(i)) directions_.push_back(rays.direction(i).cast<float>());
+    }
+    points_.resize(directions_.size());
+    exits_.resize(directions_.size());
+  }
+
+  void Trace(bool flat) {
+    constexpr std::size_t kSize = RayPacket::kSize;
+    const Eigen::Vector3f eye = rays_.origin().cast<float>();
+    RayPacket packet;
+    for (std::size_t first = 0; first < directions_.size(); first += kSize) {
+      for (std::size_t k = 0; k < kSize; ++k) {
+        const std::size_t i = std::min(first + k, directions_.size() - 1);
+        packet.valid[k] = first + k < directions_.size() ? -1 : 0;
+        Set(packet, k, eye, directions_[i]);
+      }
+      scene_.Intersect16(RaySet::kHead, packet);
+      for (std::size_t k = 0; k < kSize; ++k) {
+        if (!packet.valid[k]) continue;
+        if (packet.object[k] == SceneObject::kNone) {
+          packet.valid[k] = 0;
+          exits_[first + k].setZero();
+          continue;
+        }
+        const Eigen::Vector3f& d = directions_[first + k];
+        const Eigen::Vector3f inside =
+            Bend(d, front_.At(flat, packet.triangle[k], packet.u[k], packet.v[k]), 1 / index_);
+        Set(packet, k, eye + packet.far[k] * d, inside);
+      }
+      scene_.Intersect16(RaySet::kFrame, packet);
+      for (std::size_t k = 0; k < kSize; ++k) {
+        if (!packet.valid[k]) continue;
+        if (packet.object[k] == SceneObject::kNone) {
+          exits_[first + k].setZero();
+          continue;
+        }
+        const Eigen::Vector3f d(packet.dx[k], packet.dy[k], packet.dz[k]);
+        points_[first + k] =
+            Eigen::Vector3f(packet.ox[k], packet.oy[k], packet.oz[k]) + packet.far[k] * d;
+        exits_[first + k] =
+            Bend(d, back_.At(flat, packet.triangle[k], packet.u[k], packet.v[k]), index_);
+      }
+    }
+  }
+
+  std::vector<ExitRay> Answer() const {
+    std::vector<ExitRay> exits(rays_.size());
+    std::size_t k = 0;
+    for (std::size_t i = 0; i < rays_.size(); ++i) {
+      if (!rays_.inside(i)) continue;
+      exits[i] = rays_.ExitFrom(points_[k].cast<double>(), exits_[k].cast<double>());
+      ++k;
+    }
+    return exits;
+  }
+
+ private:
+  static void Set(RayPacket& packet, std::size_t k, const Eigen::Vector3f& origin,
+                  const Eigen::Vector3f& d) {
+    packet.ox[k] = origin.x();
+    packet.oy[k] = origin.y();
+    packet.oz[k] = origin.z();
+    packet.dx[k] = d.x();
+    packet.dy[k] = d.y();
+    packet.dz[k] = d.z();
+    packet.near[k] = 0;
+    packet.far[k] = std::numeric_limits<float>::infinity();
+    packet.object[k] = SceneObject::kNone;
+  }
+  // Snell's law; zero on total reflection.
+  static Eigen::Vector3f Bend(const Eigen::Vector3f& d, const Eigen::Vector3f& normal, float eta) {
+    const float c = d.dot(normal);
+    const float after2 = 1 - eta * eta * (1 - c * c);
+    if (after2 < 0) return Eigen::Vector3f::Zero();
+    return eta * d + (std::copysign(std::sqrt(after2), c) - eta * c) * normal;
+  }
+
+  EmbreeScene scene_;
+  MeshNormals front_, back_;
+  float index_;
+  const CameraRays& rays_;
+  std::vector<Eigen::Vector3f> directions_, points_, exits_;
+};
+
+}  // namespace
+
+Result<std::vector<LensMethod>> MeshMethods(const Lens& lens, const CameraRays& rays, int most) {
+  std::vector<LensMethod> flat, smooth;
+  // Rays to the rim cross the front up to a tenth farther out than they meet its vertex plane.
+  constexpr double kMargin = 0.55;
+  for (int cells = 16; 4 * cells * cells <= most; cells *= 2) {
+    const auto mesh = [&](bool back) {
+      return SurfaceMesh(lens, back, kMargin * rays.view().width_mm,
+                         kMargin * rays.view().height_mm, cells);
+    };
+    LG_ASSIGN(const TriangleMesh front, mesh(false));
+    LG_ASSIGN(const TriangleMesh back, mesh(true));
+    LG_ASSIGN(EmbreeScene scene, EmbreeScene::Build(front, TriangleMesh{}, back));
+    const auto facets = std::make_shared<FacetLens>(std::move(scene), MeshNormals(front),
+                                                    MeshNormals(back), lens.medium.index_d, rays);
+    const std::string size = fmt::format("{} triangles", 4 * cells * cells);
+    for (const bool is_flat : {true, false}) {
+      (is_flat ? flat : smooth)
+          .push_back({is_flat ? "mesh, flat normals" : "mesh, interpolated normals", size,
+                      [facets, is_flat] { facets->Trace(is_flat); },
+                      [facets] {
+                        return LensAnswer{facets->Answer(), {}, {}};
+                      }});
+    }
+  }
+  flat.insert(flat.end(), smooth.begin(), smooth.end());
+  return flat;
+}
+
+}  // namespace lorgnette::validation
