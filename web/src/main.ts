@@ -55,6 +55,17 @@ function tabBar(panels: Record<Tab, HTMLElement>): HTMLElement {
   return bar;
 }
 
+// A view that is not made before it is first opened.
+function whenOpened(tab: Tab, make: () => HTMLElement): HTMLElement {
+  const place = h("div");
+  const look = (): void => {
+    if (view.tab === tab && !place.hasChildNodes()) place.append(make());
+  };
+  view.onChange(look);
+  look();
+  return place;
+}
+
 async function start(app: HTMLElement): Promise<void> {
   applyTheme();
   document.title = t("page.title");
@@ -80,7 +91,7 @@ async function start(app: HTMLElement): Promise<void> {
     maps: maps.root,
     why: why.root,
     lessons: lessonsSection(store, { explain, map: maps.choose }),
-    practice: practiceSection(engine),
+    practice: whenOpened("practice", () => practiceSection(engine)),
     solid: solidSection(store, open("solid")),
     cost: costSection(open("cost")),
   };

@@ -92,9 +92,9 @@ inline constexpr int kMirroredRow = 10;
 LG_PAGE_API const float* lg_mirrored();
 
 // A focimeter's reading at (x, y) of the lens, by rays: mean, J0, J45 (D), prism toward +x and +y
-// (prism D), and what no sphere and cylinder explains (D); NaN where nothing can be read. 6
-// numbers.
-LG_PAGE_API const double* lg_focimeter(int slot, double x_mm, double y_mm);
+// (prism D), and what no sphere and cylinder explains (D); NaN where nothing can be read. `turned`
+// not 0: the lens lies with its front on the stop (front vertex power). 6 numbers.
+LG_PAGE_API const double* lg_focimeter(int slot, double x_mm, double y_mm, int turned);
 
 // What the turning eye meets over the lens: an n x m grid (rows downwards) of gazes from a centre
 // of rotation stop_mm behind the back vertex toward the points (x, y) of the lens's plane through

@@ -97,7 +97,7 @@ export const LESSONS: Lesson[] = [
     paragraphs: 2,
     look: "why",
     explain: "worn",
-    lens: { rx: { sphere: 6, cylinder: 0, axis: null }, panto: 15 },
+    lens: { rx: { sphere: 6, cylinder: 0, axis: null }, medium: "CR-39", panto: 15 },
     questions: [
       number(martinSphere(6, 15, 1.5), "D", 0.02),
       number(martinSphere(6, 15, 1.5) * tangent(15) ** 2, "D", 0.02),
