@@ -16,6 +16,8 @@ const program = process.env.LORGNETTE ?? `${root}build/release/lorgnette`;
 
 const ORDERS = 500;
 const AT_ONCE = 4;
+const MIN_CENTRE_MM = 1.5; // the program's own are those of the medium
+const MIN_EDGE_MM = 1;
 const MEASURED_EVERY = 5; // of them also as a camera sees them
 // Both compilers keep to IEEE double and contract nothing; what differs is the C library's last
 // digit in sin, cos and atan2, a few ulp, which the steepest of these lenses magnify about 100 times.
@@ -64,6 +66,8 @@ const toPage = (o) => ({
   medium: { name: "medium", index_d: o.index, density_g_cm3: o.density },
   ...(o.base === null ? {} : { base_curve_D: o.base }),
   diameter_mm: o.diameter,
+  min_center_thickness_mm: MIN_CENTRE_MM,
+  min_edge_thickness_mm: MIN_EDGE_MM,
   vertex_distance_mm: o.vertex,
   camera_mm: o.camera,
   depth_mm: o.depth,
@@ -74,6 +78,7 @@ const toPage = (o) => ({
 function toProgram(command, o) {
   const args = [command, `--sphere=${o.sphere}`, `--eye=${o.eye}`, `--index=${o.index}`,
     `--density=${o.density}`, `--diameter=${o.diameter}`, `--vertex=${o.vertex}`,
+    `--min-center=${MIN_CENTRE_MM}`, `--min-edge=${MIN_EDGE_MM}`,
     `--prism-in=${o.prism_in}`, `--prism-up=${o.prism_up}`];
   if (o.cylinder !== 0) args.push(`--cylinder=${o.cylinder}`, `--axis=${o.axis}`);
   if (o.base !== null) args.push(`--base=${o.base}`);
