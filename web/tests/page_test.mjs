@@ -432,7 +432,7 @@ describe("the page", { skip }, () => {
   test("a lens that leans shows what the eye meets, and is made for it when asked", async () => {
     const { page, problems, close } = await open();
     assert.equal(await page.locator('[data-number="worn-right"]').isVisible(), false);
-    await page.getByLabel("Tilt").fill("12");
+    await page.getByRole("spinbutton", { name: "Tilt" }).fill("12");
     await page.getByLabel("Face form").fill("6");
     const worn = await number(page, "worn-right");
     assert.match(worn, /^−4\.\d\d −0\.\d\d × 1\d\d/);
