@@ -17,6 +17,7 @@ namespace lorgnette {
 namespace {
 
 constexpr double kBevelShare = 1.0 / 3;  // of the edge, from the front: where a bevel looks best
+constexpr double kOnEdge = 1e-9;         // a ray through a corner meets one of its edges at least
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
 double DegreesOf(const Eigen::Vector2d& p) {
@@ -223,7 +224,7 @@ std::vector<double> EdgeThicknessByAngle(const CutLens& lens, const LensOpening&
       if (crossing == 0) continue;
       const double r = (a.x() * edge.y() - a.y() * edge.x()) / crossing;
       const double u = (a.x() * along.y() - a.y() * along.x()) / crossing;
-      if (u >= 0 && u <= 1) reach = std::max(reach, r);
+      if (u > -kOnEdge && u < 1 + kOnEdge) reach = std::max(reach, r);
     }
     const Eigen::Vector2d at = centre.head<2>() + reach * along;
     const auto front = FrontHit(lens.lens.lens(), at), back = BackHit(lens.lens.lens(), at);

@@ -62,10 +62,9 @@ class MtlParser {
     const std::string_view first = NextWord(rest);
     if (first == "spectral" || first == "xyz") return {};  // rare: the default stays
     for (int k = 0; k < 3; ++k) {
-      // One number stands for all three.
-      if (k > 0 && RestOf(line).empty()) {
-        rgb[k] = rgb[0];
-        continue;
+      if (k == 1 && RestOf(line).empty()) {  // one number stands for all three
+        rgb.setConstant(rgb[0]);
+        break;
       }
       const std::string_view word = NextWord(line);
       if (!ReadDouble(word, rgb[k]) || !std::isfinite(rgb[k])) {

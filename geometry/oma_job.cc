@@ -14,6 +14,7 @@ namespace lorgnette {
 namespace {
 
 constexpr int kTraceSplinePieces = 90;  // about 1.7 mm each: smooths what 0.01 mm steps leave
+constexpr double kOnEdge = 1e-9;        // a ray through a corner meets one of its edges at least
 constexpr int kTraceAngles = 400, kThicknessAngles = 72;
 
 // Distance from the origin to the contour at equal angles.
@@ -29,7 +30,8 @@ std::vector<double> Radii(const Polygon2& contour, int count) {
       if (crossing == 0) continue;
       const double r = (a.x() * edge.y() - a.y() * edge.x()) / crossing;
       const double u = (a.x() * along.y() - a.y() * along.x()) / crossing;
-      if (u >= 0 && u <= 1) radii[std::size_t(k)] = std::max(radii[std::size_t(k)], r);
+      if (u > -kOnEdge && u < 1 + kOnEdge)
+        radii[std::size_t(k)] = std::max(radii[std::size_t(k)], r);
     }
   }
   return radii;

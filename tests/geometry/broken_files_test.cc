@@ -73,7 +73,6 @@ std::vector<Broken> Corpus() {
       {"stl", ""},
       {"stl", "solid nothing"},
       {"stl", std::string(80, 'x') + std::string("\xff\xff\xff\xff", 4)},
-      {"stl", std::string(84, '\0')},
       {"stl", "solid a\nfacet normal 0 0 1\nouter loop\nvertex 0 0\n"},
       {"gltf", ""},
       {"gltf", "{}"},

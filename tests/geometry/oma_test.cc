@@ -199,11 +199,12 @@ TEST(OmaFile, RealTracesAgreeWithTheirOwnBoxingAndCircumference) {
   EXPECT_EQ(packed->Text(), *ReadFile(folder + "TRCFMT6.oma"));
 }
 
-// A real progressive lens: designed from its own job (powers, addition, index, front radius, centre
-// thickness, where the optical centre lies: FCOCIN inward and FCOCUP up from the boxing centre),
-// cut to its own trace. The job's T are its thickness less the pin bevel on both sides and the
-// finishing allowance (2 PINB + FINCMP): so they differ from the thickest and thinnest edge that
-// the same file states (_THKP 4.36 at 325 degrees, T 3.65; _THNP 2.42 at 160, T 1.73).
+// A real progressive lens: designed from its own job (powers, addition, index, front radius,
+// thickness at the optical centre, where the optical centre lies: FCOCIN inward and FCOCUP up from
+// the boxing centre), cut to its own trace. The job's T are its thickness less the pin bevel on
+// both sides and the finishing allowance (2 PINB + FINCMP): so they differ from the thickest and
+// thinnest edge that the same file states (_THKP 4.36 at 325 degrees, T 3.65; _THNP 2.42 at 160,
+// T 1.73).
 TEST(OmaFile, ThicknessOfARealLensAgreesWithItsLabsWithinThreeTenths) {
   const std::string path = LORGNETTE_SOURCE_DIR "/../shared/data/oma/STHKFMT.oma";
   if (!std::filesystem::exists(path)) GTEST_SKIP() << "no " << path;
@@ -230,8 +231,11 @@ TEST(OmaFile, ThicknessOfARealLensAgreesWithItsLabsWithinThreeTenths) {
     lens.medium.index_d = *order->index;
     const double tooling = right ? *order->front_diopters.right : *order->front_diopters.left;
     lens.base_curve = Diopters(tooling * (*order->index - 1) / 0.530);
-    lens.center_thickness_mm = number("CTHICK", trace.eye);
-    lens.progressive = ProgressiveOrder{};
+    lens.center_thickness_mm = number("OTHK", trace.eye);  // at the optical centre
+    ProgressiveOrder progressive;                          // in place of the maker's own design
+    progressive.design = ProgressiveDesign::kSoft;
+    progressive.start_mm = 0;
+    lens.progressive = progressive;
     lens.contour_mm = ContourInLensFrame(opening.contour_mm, centre);
     const auto design = DesignLens(lens);
     ASSERT_TRUE(design.has_value()) << design.error().message;

@@ -108,7 +108,6 @@ TEST(WithBridge, ChangesTheBridgeAndCarriesThePadsAlong) {
   const FrameModel frame = BuildFrame(made);
   EXPECT_EQ(wider.boxing.dbl_mm, frame.boxing.dbl_mm + 2);
   EXPECT_NEAR(wider.boxing.a_mm, frame.boxing.a_mm, 1e-12);
-  ASSERT_EQ(wider.nose_contacts.size(), frame.nose_contacts.size());
   const auto nearest = [](const FrameModel& f) {
     double x = 1e9;
     for (const Eigen::Vector3d& p : f.nose_contacts) x = std::min(x, std::abs(p.x()));
