@@ -196,11 +196,11 @@ double MirrorShare(const TriangleMesh& mesh, int axis) {
 }
 
 std::optional<FrameAxes> FindFrameAxes(const TriangleMesh& mesh, std::optional<double> unit_mm,
-                                       const TriangleMesh* lenses) {
+                                       const TriangleMesh* lenses, bool scan) {
   Eigen::Matrix3d base = Eigen::Matrix3d::Identity();  // file to axes that fit the glasses
   auto [side, share] = MostSymmetric(mesh);
   bool turned_in_space = false;
-  if (share < kSymmetric) {
+  if (scan && share < kSymmetric) {
     const Eigen::Matrix3d principal = PrincipalAxes(mesh);
     const auto [other, other_share] = MostSymmetric(Turned(mesh, principal));
     if (other_share > share + kMirrorGain) {
@@ -247,7 +247,7 @@ std::optional<FrameAxes> FindFrameAxes(const TriangleMesh& mesh, std::optional<d
     look(first);
     look(scale * AxisMatrix(side, (side + 2) % 3, (side + 1) % 3) * base);
   }
-  if (!openings) {
+  if (!openings && scan) {
     for (double angle = 0; angle < 180; angle += kFrontStep_deg) {
       look(Eigen::AngleAxisd(RadiansFromDegrees(angle), Eigen::Vector3d::UnitX())
                .toRotationMatrix() *

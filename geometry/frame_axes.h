@@ -25,8 +25,9 @@ double MirrorShare(const TriangleMesh& mesh, int axis);
 //   rimless)
 // The file's axes are taken where the glasses are symmetric across one of them; else the plane of
 // symmetry is found by the mesh's principal axes. The front is then looked for in steps of 15
-// degrees around the axis across. nullopt when two openings (discs) are seen from nowhere.
+// degrees around the axis across (`scan`; else along the file's axes alone). nullopt when two
+// openings (discs) are seen from nowhere.
 std::optional<FrameAxes> FindFrameAxes(const TriangleMesh& mesh, std::optional<double> unit_mm,
-                                       const TriangleMesh* lenses = nullptr);
+                                       const TriangleMesh* lenses = nullptr, bool scan = true);
 
 }  // namespace lorgnette

@@ -32,8 +32,9 @@ constexpr double kBendDrop_mm = 2.5;
 // Boxing that glasses can have.
 constexpr double kLeastA_mm = 25, kGreatestA_mm = 90, kLeastB_mm = 12, kGreatestB_mm = 80;
 constexpr double kLeastDbl_mm = 3, kGreatestDbl_mm = 45;
-constexpr double kHalfRimShare = 0.2;        // of a lens' edge that a rim holds
-constexpr std::size_t kMostPartsTried = 12;  // as unnamed lenses, alone and in pairs
+constexpr double kFullRimShare = 0.9;
+constexpr double kHalfRimShare = 0.2;       // of a lens' edge that a rim holds
+constexpr std::size_t kMostPartsTried = 8;  // as unnamed lenses, alone and in pairs
 
 std::string Lower(std::string text) {
   std::transform(text.begin(), text.end(), text.begin(),
@@ -158,14 +159,14 @@ class Importer {
   std::optional<FrameAxes> AxesWithout(std::size_t a, std::size_t b) {
     if (demo_[a] || demo_[b]) return std::nullopt;
     demo_[a] = demo_[b] = true;
-    auto axes = FindFrameAxes(WithoutLenses(), unit_mm_);
+    auto axes = FindFrameAxes(WithoutLenses(), unit_mm_, nullptr, false);
     if (!axes) demo_[a] = demo_[b] = false;
     return axes;
   }
 
   // A half rim or no rim: the two lenses stand for the openings. Parts i and j are taken for them
   // where neither name nor material tells.
-  std::optional<FrameAxes> AxesByLenses() const {
+  std::optional<FrameAxes> AxesByLenses(bool scan) const {
     TriangleMesh lenses;
     for (std::size_t i = 0; i < demo_.size(); ++i) {
       if (demo_[i]) Append(lenses, file_.parts[i].mesh);
@@ -173,12 +174,12 @@ class Importer {
     if (lenses.empty()) return std::nullopt;
     TriangleMesh all = WithoutLenses();
     Append(all, lenses);
-    return FindFrameAxes(all, unit_mm_, &lenses);
+    return FindFrameAxes(all, unit_mm_, &lenses, scan);
   }
   std::optional<FrameAxes> AxesByLenses(std::size_t i, std::size_t j) {
     if (demo_[i] || demo_[j]) return std::nullopt;
     demo_[i] = demo_[j] = true;
-    auto axes = AxesByLenses();
+    auto axes = AxesByLenses(false);
     if (!axes) demo_[i] = demo_[j] = false;
     return axes;
   }
@@ -209,13 +210,14 @@ class Importer {
     }
     auto axes = FindFrameAxes(WithoutLenses(), unit_mm_);
     if (!axes) {
+      axes = AxesByLenses(true);
+      by_lenses_ = axes.has_value();
+    }
+    if (!axes) {
       axes = FirstOfParts([&](std::size_t i, std::size_t j) { return AxesWithout(i, j); });
     }
     if (!axes) {
-      axes = AxesByLenses();
-      if (!axes) {
-        axes = FirstOfParts([&](std::size_t i, std::size_t j) { return AxesByLenses(i, j); });
-      }
+      axes = FirstOfParts([&](std::size_t i, std::size_t j) { return AxesByLenses(i, j); });
       by_lenses_ = axes.has_value();
     }
     if (!axes) {
@@ -327,9 +329,13 @@ class Importer {
     frame_.frame_curve_diopters = traced->frame_curve_diopters;
     if (by_lenses_) {
       const double share = (RimShare(front, frame_.right) + RimShare(front, frame_.left)) / 2;
-      frame_.mount = share > kHalfRimShare ? FrameMount::kHalfRim : FrameMount::kRimless;
+      frame_.mount = share > kFullRimShare   ? FrameMount::kFullRim
+                     : share > kHalfRimShare ? FrameMount::kHalfRim
+                                             : FrameMount::kRimless;
       frame_.notes.push_back(fmt::format("{}: the lens shape is that of the demo lenses",
-                                         share > kHalfRimShare ? "half rim" : "rimless"));
+                                         share > kFullRimShare   ? "full rim"
+                                         : share > kHalfRimShare ? "half rim"
+                                                                 : "rimless"));
     }
     return {};
   }
