@@ -11,6 +11,7 @@
 
 #include "apps/commands.h"
 #include "apps/lens_options.h"
+#include "apps/lens_orders.h"
 #include "base/atomic_file.h"
 #include "validation/cost/studies.h"
 
@@ -43,8 +44,8 @@ Status RunCostCommand(CostCommandOptions options, std::ostream& out) {
   LG_ASSIGN(const vc::CostBudget budget, vc::ParseBudget(options.max_error, options.max_time));
   const bool has_budget = budget.max_error || budget.max_ms;
   if (!options.lens.sphere_D) options.lens.sphere_D = kDefaultSphere_D;
-  LG_ASSIGN(const LensDesign design, LensFromOptions(options.lens));
-  LG_ASSIGN(const vc::CostReport report, vc::RunCost(design, options.cost));
+  LG_ASSIGN(const MadeLens lens, LensFromOptions(options.lens));
+  LG_ASSIGN(const vc::CostReport report, vc::RunCost(lens.design, options.cost));
   out << (options.json ? vc::CostJson(report)
                        : vc::CostText(report, has_budget ? &budget : nullptr));
   if (!options.csv.empty()) {
