@@ -6,6 +6,7 @@
 #include <CLI/Config.hpp>
 #include <CLI/Formatter.hpp>
 #include <nlohmann/json.hpp>
+#include <optional>
 #include <ostream>
 
 #include "apps/commands.h"
@@ -17,7 +18,14 @@ namespace {
 struct FramesOptions {
   std::string frame;
   bool json = false;
+  std::optional<double> unit_mm;
 };
+
+const char* MountName(FrameMount mount) {
+  return mount == FrameMount::kFullRim   ? "full rim"
+         : mount == FrameMount::kHalfRim ? "half rim"
+                                         : "rimless";
+}
 
 const char* KindName(FramePartKind kind) {
   switch (kind) {
@@ -58,8 +66,9 @@ Status ListFrames(bool json, std::ostream& out) {
   return {};
 }
 
-Status ShowFrame(const std::string& name, bool json, std::ostream& out) {
-  LG_ASSIGN(const FrameModel frame, LoadFrame(name));
+Status ShowFrame(const std::string& name, std::optional<double> unit_mm, bool json,
+                 std::ostream& out) {
+  LG_ASSIGN(const FrameModel frame, LoadFrame(name, unit_mm));
   const Boxing& box = frame.boxing;
   if (json) {
     nlohmann::ordered_json parts = nlohmann::ordered_json::array();
@@ -76,10 +85,14 @@ Status ShowFrame(const std::string& name, bool json, std::ostream& out) {
                                              {"frame_pd_mm", box.frame_pd_mm()},
                                              {"effective_diameter_mm", box.effective_diameter_mm},
                                              {"circumference_mm", box.circumference_mm},
+                                             {"mount", MountName(frame.mount)},
+                                             {"frame_curve_D", frame.frame_curve_diopters},
+                                             {"face_form_deg", frame.face_form_deg},
                                              {"pantoscopic_tilt_deg", frame.pantoscopic_tilt_deg},
                                              {"temple_length_mm", frame.temple_length_mm},
                                              {"temple_spread_mm", frame.temple_spread_mm},
                                              {"contour_points", frame.left.contour_mm.size()},
+                                             {"notes", frame.notes},
                                              {"parts", parts}};
     out << document.dump(2) << '\n';
     return {};
@@ -87,13 +100,15 @@ Status ShowFrame(const std::string& name, bool json, std::ostream& out) {
   const auto line = [&](const char* label, double value, const char* unit) {
     out << fmt::format("  {:<34}{:>9.2f} {}\n", label, value, unit);
   };
-  out << frame.name << '\n';
+  out << frame.name << ", " << MountName(frame.mount) << '\n';
   line("lens width A", box.a_mm, "mm");
   line("lens height B", box.b_mm, "mm");
   line("distance between lenses DBL", box.dbl_mm, "mm");
   line("frame PD (A + DBL)", box.frame_pd_mm(), "mm");
   line("effective diameter ED", box.effective_diameter_mm, "mm");
   line("circumference", box.circumference_mm, "mm");
+  line("frame curve (at 1.530)", frame.frame_curve_diopters, "D");
+  line("face form", frame.face_form_deg, "deg");
   line("pantoscopic tilt", frame.pantoscopic_tilt_deg, "deg");
   line("temple length", frame.temple_length_mm, "mm");
   line("between the temples at the ears", frame.temple_spread_mm, "mm");
@@ -101,6 +116,7 @@ Status ShowFrame(const std::string& name, bool json, std::ostream& out) {
     out << fmt::format("  {:<24}{:<10}{:>9} triangles\n", part.name, KindName(part.kind),
                        part.mesh.triangles.size());
   }
+  for (const std::string& note : frame.notes) out << "  note: " << note << '\n';
   return {};
 }
 
@@ -111,15 +127,20 @@ void AddFramesCommand(CLI::App& program, CommandContext& context) {
       *program.add_subcommand("frames", "List the frames that ship, or look into one");
   const auto options = std::make_shared<FramesOptions>();
   command.add_option("frame", options->frame, "Name of a shipped frame, or a frame file");
+  command.add_option("--unit", options->unit_mm,
+                     "Millimetres in one unit of the file, where it does not say");
   command.add_flag("--json", options->json, "Print JSON in place of text");
   command.footer(
       "Examples:\n"
       "  lorgnette frames\n"
       "  lorgnette frames panto\n"
-      "  lorgnette frames my_frame.json --json");
+      "  lorgnette frames my_frame.json --json\n"
+      "  lorgnette frames glasses.obj --unit 10\n"
+      "  lorgnette frames job.oma");
   command.final_callback([options, &context] {
-    context.status = options->frame.empty() ? ListFrames(options->json, context.out)
-                                            : ShowFrame(options->frame, options->json, context.out);
+    context.status = options->frame.empty()
+                         ? ListFrames(options->json, context.out)
+                         : ShowFrame(options->frame, options->unit_mm, options->json, context.out);
   });
 }
 

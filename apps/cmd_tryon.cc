@@ -89,6 +89,7 @@ Status RunTryonCommand(TryonCommandOptions options, std::ostream& out) {
                      result.frames_without_face, result.seconds.wall);
   for (const std::string& still : result.stills) out << still << '\n';
   if (!request.report.empty()) out << request.report << '\n';
+  if (!request.oma.empty()) out << request.oma << '\n';
   return {};
 }
 
@@ -117,6 +118,11 @@ void AddTryonCommand(CLI::App& program, CommandContext& context) {
   command.add_flag("--beside", request.stills_beside_input, "Stills show the input at the left");
   command.add_option("--report", request.report, "Write a report (JSON)");
   AddEffectOptions(command, options->effects);
+  command.add_option("--oma", request.oma,
+                     "Write the lenses' results for a lab (OMA): into a copy of the frame's or the "
+                     "prescription's OMA job, or a new one");
+  command.add_option("--unit", request.frame_unit_mm,
+                     "Millimetres in one unit of the frame file, where it does not say");
   command.add_flag("--no-refraction", options->no_refraction, "Leave out refraction");
   command.add_flag("--no-reflection", options->no_reflection, "Leave out reflection");
   command.add_flag("--no-shadow", options->no_shadow, "Leave out the shadow");

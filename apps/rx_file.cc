@@ -3,7 +3,10 @@
 
 #include <fmt/format.h>
 
+#include <filesystem>
+
 #include "base/atomic_file.h"
+#include "geometry/oma.h"
 #include "optics/fhir.h"
 
 namespace lorgnette {
@@ -14,7 +17,14 @@ Result<Prescription> ReadRxFile(const std::string& path, std::optional<double> p
   }
   LG_ASSIGN(const std::string text, ReadFile(path));
   Prescription rx;
-  if (LooksLikeFhir(text)) {
+  if (std::filesystem::path(path).extension() == ".oma") {
+    LG_ASSIGN(const OmaFile job, OmaFile::Parse(text, path));
+    LG_ASSIGN(const OmaOrder order, ReadOmaOrder(job));
+    if (!order.has_pd && !pd_mm) {
+      return UsageError(path + ":IPD: got no pupillary distance, want --pd");
+    }
+    rx = order.rx;
+  } else if (LooksLikeFhir(text)) {
     LG_ASSIGN(const FhirPrescription fhir, ParseFhir(text, path));
     if (!fhir.has_pd && !pd_mm) {
       return UsageError(path + ": FHIR says no pupillary distance, want --pd");

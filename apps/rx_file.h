@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// A prescription file in either of its forms: ours, or an HL7 FHIR VisionPrescription.
+// A prescription file in any of its forms: ours, an HL7 FHIR VisionPrescription, or an OMA job.
 #pragma once
 
 #include <optional>
@@ -10,8 +10,8 @@
 
 namespace lorgnette {
 
-// FHIR knows no pupillary distance: `pd_mm` gives it, in place of the file's where that has one
-// too. Without either it is an error.
+// FHIR knows no pupillary distance, and a job may lack it: `pd_mm` gives it, in place of the file's
+// where that has one too. Without either it is an error.
 Result<Prescription> ReadRxFile(const std::string& path,
                                 std::optional<double> pd_mm = std::nullopt);
 

@@ -12,6 +12,7 @@
 #include <filesystem>
 
 #include "apps/camera_choice.h"
+#include "apps/oma_export.h"
 #include "apps/rx_file.h"
 #include "apps/still_choice.h"
 #include "apps/track_pipeline.h"
@@ -376,7 +377,7 @@ Result<TryonResult> RunTryon(const TryonRequest& request) {
   const auto start = Clock::now();
 
   LG_ASSIGN(result.prescription, ReadRxFile(request.rx, request.pd_mm));
-  LG_ASSIGN(const FrameModel frame, LoadFrame(request.frame));
+  LG_ASSIGN(const FrameModel frame, LoadFrame(request.frame, request.frame_unit_mm));
   const bool from_face = request.environment == "face";
   Environment environment = Environment::Constant({1, 1, 1});
   if (!from_face) {
@@ -442,6 +443,7 @@ Result<TryonResult> RunTryon(const TryonRequest& request) {
     }
   }
   seconds.wall = std::chrono::duration<double>(Clock::now() - start).count();
+  if (!request.oma.empty()) LG_RETURN_IF_ERROR(WriteOmaJob(result));
   if (!request.report.empty()) {
     LG_RETURN_IF_ERROR(WriteFileAtomically(request.report, TryonReportJson(result)));
   }

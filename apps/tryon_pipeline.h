@@ -24,6 +24,8 @@ struct TryonRequest {
                             // that, with the broad light that the face shows
   std::string track;        // track file; empty: the video is tracked
   std::string report;       // empty: none
+  std::string oma;          // lens results for the lab; empty: none
+  std::optional<double> frame_unit_mm;  // of a frame file that does not say
   std::string model_dir;
   FrameRange frames;
   std::optional<double> pd_mm;  // in place of the prescription's
