@@ -21,6 +21,7 @@ struct TryonCommandOptions {
   std::string frames;
   std::string quality, shadow;  // empty: the compositor's defaults
   std::optional<int> samples;
+  bool adaptive = false;
   bool no_refraction = false, no_reflection = false, no_shadow = false;
   EffectOptions effects;
   std::vector<double> nudge;
@@ -63,6 +64,7 @@ Status RunTryonCommand(TryonCommandOptions options, std::ostream& out) {
     compositor.samples_per_side = *options.samples;
     compositor.adaptive = false;
   }
+  if (options.adaptive) compositor.adaptive = true;
   if (compositor.samples_per_side < 1 || compositor.samples_per_side > kMaxSamplesPerSide) {
     return UsageError(fmt::format("--samples: got {}, want 1..{}", compositor.samples_per_side,
                                   kMaxSamplesPerSide));
@@ -144,6 +146,8 @@ void AddTryonCommand(CLI::App& program, CommandContext& context) {
   command.add_option("--pd", request.pd_mm,
                      "Distance between the pupils, mm, for the prescription's");
   command.add_option("--samples", options->samples, "Samples a pixel along each side (2)");
+  command.add_flag("--adaptive", options->adaptive,
+                   "All samples only where the picture needs them: faster, no visible difference");
   command
       .add_option("--nudge", options->nudge,
                   "Move the glasses after the fit: X,Y,Z in mm (wearer's left, up, forward), "

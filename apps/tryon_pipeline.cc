@@ -272,25 +272,24 @@ class Assembly {
     // Glasses are drawn into the pinhole's picture and brought back into the lens's.
     ImageRgb8 rectified;
     if (rectifier_) rectified = rectifier_->Rectified(job.frame.rgb);
-    const ImageRgbF input = LinearFromDisplay(rectifier_ ? rectified : job.frame.rgb);
+    const ImageRgb8& seen = rectifier_ ? rectified : job.frame.rgb;
     if (!exposed_) {
       result_.environment_scale =
-          compositor_.MatchExposure(input, track_.camera, job.tracked->camera_from_head);
+          compositor_.MatchExposure(seen, track_.camera, job.tracked->camera_from_head);
       compositor_.SetEnvironmentScale(result_.environment_scale);
-      compositor_.SetCameraLook(MeasureCameraLook(input));
+      compositor_.SetCameraLook(MeasureCameraLook(LinearFromDisplay(seen)));
       exposed_ = true;
     }
     const EffectPlan plan =
-        compositor_.Plan(input, track_.camera, job.tracked->camera_from_head, request_.effects);
+        compositor_.Plan(seen, track_.camera, job.tracked->camera_from_head, request_.effects);
     CountEffects(plan);
     RenderCounts counts;
-    const ImageRgbF output = compositor_.Render(input, track_.camera, job.tracked->camera_from_head,
-                                                &counts, &plan.effects);
+    ImageRgb8 drawn = compositor_.Render(seen, track_.camera, job.tracked->camera_from_head,
+                                         &counts, &plan.effects);
     result_.counts.lens_pixels += counts.lens_pixels;
     result_.counts.frame_pixels += counts.frame_pixels;
     result_.counts.shadowed_pixels += counts.shadowed_pixels;
     result_.counts.filled_samples += counts.filled_samples;
-    ImageRgb8 drawn = DisplayFromLinear(output);
     job.frame.rgb =
         rectifier_ ? rectifier_->WithChanges(job.frame.rgb, rectified, drawn) : std::move(drawn);
   }

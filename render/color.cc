@@ -71,6 +71,11 @@ double SrgbFromLinear(double linear) {
 
 float LinearFromCode(std::uint8_t code) { return GetTables().linear[code]; }
 
+void LinearFromCodes(const std::uint8_t* codes, std::size_t count, float* linear) {
+  const Tables& tables = GetTables();
+  for (std::size_t i = 0; i < count; ++i) linear[i] = tables.linear[codes[i]];
+}
+
 std::uint8_t CodeFromLinear(float linear) { return Code(GetTables(), linear); }
 
 ImageRgbF LinearFromDisplay(const ImageRgb8& image) {

@@ -2,6 +2,7 @@
 // Display-encoded 8-bit pixels and linear light, by the sRGB transfer (IEC 61966-2-1).
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
 
 #include "base/image.h"
@@ -14,6 +15,8 @@ double SrgbFromLinear(double linear);
 
 // Linear light of one code value, correctly rounded to float.
 float LinearFromCode(std::uint8_t code);
+// The same for a run of them.
+void LinearFromCodes(const std::uint8_t* codes, std::size_t count, float* linear);
 // Code value nearest to a linear value on the encoded scale: what round(255 SrgbFromLinear(x))
 // gives. Below 0 and NaN: 0; above 1: 255.
 std::uint8_t CodeFromLinear(float linear);

@@ -10,6 +10,7 @@
 #include "base/check.h"
 #include "base/units.h"
 #include "optics/trace.h"
+#include "render/color.h"
 #include "render/head_scene.h"
 #include "render/ray_follower.h"
 #include "render/tile_mask.h"
@@ -59,29 +60,22 @@ struct PixelSum {
   }
 };
 
-// A tile's pixels of the picture: rectangle of at most kTileSide a side.
-struct TileArea {
-  int x0, y0, x1, y1;
-};
-
-// Samples of the pixels that `wanted` names (all of them when it is empty), side x side a pixel,
-// those of one place inside their pixels together.
-void PlaceSamples(const TileArea& area, int side, const std::vector<bool>& wanted,
+// Samples of the pixels that `wanted` names (all of them when it is empty), side x side a pixel, in
+// blocks of pixels that fill a packet of 16.
+void PlaceSamples(const PixelBox& area, int side, const std::vector<bool>& wanted,
                   std::vector<CameraSample>& samples) {
   samples.clear();
-  for (int s = 0; s < side * side; ++s) {
-    const float dx = (float(s % side) + 0.5f) / float(side);
-    const float dy = (float(s / side) + 0.5f) / float(side);
-    // Blocks of 4 x 4 pixels: one packet.
-    for (int by = area.y0; by < area.y1; by += 4) {
-      for (int bx = area.x0; bx < area.x1; bx += 4) {
-        for (int y = by; y < std::min(by + 4, area.y1); ++y) {
-          for (int x = bx; x < std::min(bx + 4, area.x1); ++x) {
-            const int pixel = (y - area.y0) * kTileSide + (x - area.x0);
-            if (!wanted.empty() && !wanted[std::size_t(pixel)]) continue;
+  const int block = std::max(1, 4 / side);
+  for (int by = area.y0; by < area.y1; by += block) {
+    for (int bx = area.x0; bx < area.x1; bx += block) {
+      for (int y = by; y < std::min(by + block, area.y1); ++y) {
+        for (int x = bx; x < std::min(bx + block, area.x1); ++x) {
+          const int pixel = (y - area.y0) * kTileSide + (x - area.x0);
+          if (!wanted.empty() && !wanted[std::size_t(pixel)]) continue;
+          for (int s = 0; s < side * side; ++s) {
             CameraSample sample;
-            sample.x = float(x) + dx;
-            sample.y = float(y) + dy;
+            sample.x = float(x) + (float(s % side) + 0.5f) / float(side);
+            sample.y = float(y) + (float(s / side) + 0.5f) / float(side);
             sample.pixel = std::uint16_t(pixel);
             samples.push_back(sample);
           }
@@ -91,25 +85,83 @@ void PlaceSamples(const TileArea& area, int side, const std::vector<bool>& wante
   }
 }
 
-// Pixels on the frame, and those whose neighbourhood meets different things.
-std::vector<bool> PixelsToRefine(const TileArea& area, int width, int height,
-                                 const std::vector<CameraSample::Kind>& kinds) {
+// Adaptive: what the ray through a pixel's centre met, and how bright it was, encoded.
+struct Glance {
+  CameraSample::Kind kind = CameraSample::Kind::kBackground;
+  std::uint8_t code = 0;
+};
+
+// Pixels of the frame that differ from a neighbour by more than this many code values take all
+// their samples.
+constexpr int kFrameContrast = 6;
+
+// Pixels whose neighbourhood meets different things, and those of the frame with some contrast.
+std::vector<bool> PixelsToRefine(const PixelBox& area, int width, int height,
+                                 const std::vector<Glance>& glances) {
+  using Kind = CameraSample::Kind;
   std::vector<bool> wanted(std::size_t(kTileSide) * kTileSide, false);
-  const auto kind = [&](int x, int y) {
-    return kinds[std::size_t(std::clamp(y, 0, height - 1)) * std::size_t(width) +
-                 std::size_t(std::clamp(x, 0, width - 1))];
+  const auto at = [&](int x, int y) {
+    return glances[std::size_t(std::clamp(y, 0, height - 1)) * std::size_t(width) +
+                   std::size_t(std::clamp(x, 0, width - 1))];
   };
   for (int y = area.y0; y < area.y1; ++y) {
     for (int x = area.x0; x < area.x1; ++x) {
-      const CameraSample::Kind own = kind(x, y);
-      bool refine = own == CameraSample::Kind::kFrame || own == CameraSample::Kind::kLensElsewhere;
+      const Glance own = at(x, y);
+      bool refine = own.kind == Kind::kLensElsewhere;
       for (int dy = -1; dy <= 1 && !refine; ++dy) {
-        for (int dx = -1; dx <= 1 && !refine; ++dx) refine = kind(x + dx, y + dy) != own;
+        for (int dx = -1; dx <= 1 && !refine; ++dx) {
+          const Glance other = at(x + dx, y + dy);
+          refine = other.kind != own.kind ||
+                   (own.kind == Kind::kFrame &&
+                    std::abs(int(own.code) - int(other.code)) > kFrameContrast);
+        }
       }
       wanted[std::size_t((y - area.y0) * kTileSide + (x - area.x0))] = refine;
     }
   }
   return wanted;
+}
+
+// Adaptive, where only the face's shadow falls: samples lie on every second column and row of the
+// tile and on its last ones.
+bool OnShadowGrid(int x, int y) {
+  const auto on = [](int v) { return v % 2 == 0 || v == kTileSide - 1; };
+  return on(x) && on(y);
+}
+
+// The pixels between those of the grid take the mean of their neighbours on it, where these met the
+// same thing and their factors differ by less than a code value or two; `wanted` receives the
+// others. `factor` and `kind` hold a tile's pixels.
+constexpr float kShadowContrast = 0.02f;
+void FillShadowGrid(const PixelBox& area, std::vector<Eigen::Vector3f>& factor,
+                    const std::vector<CameraSample::Kind>& kind, std::vector<bool>& wanted) {
+  wanted.assign(std::size_t(kTileSide) * kTileSide, false);
+  const int width = area.x1 - area.x0, height = area.y1 - area.y0;
+  for (int y = 0; y < height; ++y) {
+    for (int x = 0; x < width; ++x) {
+      if (OnShadowGrid(x, y)) continue;
+      const std::size_t own = std::size_t(y * kTileSide + x);
+      const int dx = x % 2 != 0 && x != kTileSide - 1 ? 1 : 0;
+      const int dy = y % 2 != 0 && y != kTileSide - 1 ? 1 : 0;
+      if (x + dx >= width || y + dy >= height) {
+        wanted[own] = true;
+        continue;
+      }
+      const std::size_t corners[4] = {
+          std::size_t((y - dy) * kTileSide + x - dx), std::size_t((y - dy) * kTileSide + x + dx),
+          std::size_t((y + dy) * kTileSide + x - dx), std::size_t((y + dy) * kTileSide + x + dx)};
+      Eigen::Vector3f low = factor[corners[0]], high = low, sum = Eigen::Vector3f::Zero();
+      bool alike = true;
+      for (const std::size_t c : corners) {
+        low = low.cwiseMin(factor[c]);
+        high = high.cwiseMax(factor[c]);
+        sum += factor[c];
+        alike = alike && kind[c] == kind[corners[0]];
+      }
+      wanted[own] = !alike || (high - low).maxCoeff() > kShadowContrast;
+      factor[own] = 0.25f * sum;
+    }
+  }
 }
 
 }  // namespace
@@ -141,6 +193,31 @@ void Compositor::SetCameraLook(const CameraLook& look) { scene_->head.options.ca
 void Compositor::SetEnvironmentScale(double scale) {
   scene_->head.options.environment_scale = scale;
 }
+
+// Where the pixels of a picture go; of those that nobody puts, the input's stay.
+class Compositor::Canvas {
+ public:
+  explicit Canvas(ImageRgbF& linear) : linear_(&linear) {}
+  explicit Canvas(ImageRgb8& display) : display_(&display) {}
+  void Put(int x, int y, const Eigen::Vector3f& light) {
+    if (linear_ != nullptr) {
+      std::copy_n(light.data(), 3, linear_->at(x, y));
+    } else {
+      for (int c = 0; c < 3; ++c) display_->at(x, y)[c] = CodeFromLinear(light[c]);
+    }
+  }
+
+ private:
+  ImageRgbF* linear_ = nullptr;
+  ImageRgb8* display_ = nullptr;
+};
+
+// What a pass draws beside the picture's pixels.
+struct Compositor::Wish {
+  PictureEffects effects;
+  std::optional<double> wavelength_nm;
+  std::vector<float>* frame_share = nullptr;  // receives the frame's share of each pixel
+};
 
 ImageRgbF Compositor::Render(const ImageRgbF& input, const Camera& camera,
                              const Eigen::Isometry3d& camera_from_head, RenderCounts* counts,
@@ -201,48 +278,122 @@ ImageRgbF Compositor::RenderPass(const ImageRgbF& input, const Camera& camera,
                                  const Eigen::Isometry3d& camera_from_head,
                                  const PictureEffects& effects, std::optional<double> wavelength_nm,
                                  RenderCounts* counts, std::vector<float>* frame_share) const {
+  ImageRgbF output = input;
+  Canvas canvas(output);
+  const TileMask mask = MarkTiles(scene_->head, camera, camera_from_head);
+  const RenderCounts met =
+      Draw(input, mask, camera, camera_from_head, {effects, wavelength_nm, frame_share}, canvas);
+  if (counts != nullptr) *counts = met;
+  return output;
+}
+
+ImageRgb8 Compositor::Render(const ImageRgb8& input, const Camera& camera,
+                             const Eigen::Isometry3d& camera_from_head, RenderCounts* counts,
+                             const PictureEffects* effects) const {
+  const PictureEffects drawn =
+      effects != nullptr ? *effects : PictureEffects::Of(scene_->head.options.effects);
+  if (drawn.Any(Effect::kDispersion) || drawn.rest[Effect::kGrain]) {
+    return DisplayFromLinear(
+        Render(LinearFromDisplay(input), camera, camera_from_head, counts, &drawn));
+  }
+  ImageRgb8 output = input;
+  Canvas canvas(output);
+  const TileMask mask = MarkTiles(scene_->head, camera, camera_from_head);
+  PixelBox box = mask.Bounds();
+  // Refracted rays mostly read near by; what lies farther is decoded when it is read.
+  constexpr int kBorder = 2 * kTileSide;
+  box = {box.x0 - kBorder, box.y0 - kBorder, box.x1 + kBorder, box.y1 + kBorder};
+  const RenderCounts met = Draw(InputPicture(input, box), mask, camera, camera_from_head,
+                                {drawn, std::nullopt, nullptr}, canvas);
+  if (counts != nullptr) *counts = met;
+  return output;
+}
+
+RenderCounts Compositor::Draw(const InputPicture& input, const TileMask& mask, const Camera& camera,
+                              const Eigen::Isometry3d& camera_from_head, const Wish& wish,
+                              Canvas& canvas) const {
+  LG_CHECK_EQ(input.width(), camera.width);
+  LG_CHECK_EQ(input.height(), camera.height);
+  std::vector<std::size_t> tiles;
+  for (std::size_t i = 0; i < mask.content.size(); ++i) {
+    if (mask.content[i] != 0) tiles.push_back(i);
+  }
+  if (tiles.empty()) return {};
   const HeadScene& head = scene_->head;
-  const RayFollower follower(head, input, camera, camera_from_head, effects, wavelength_nm);
+  const RayFollower follower(head, input, camera, camera_from_head, wish.effects,
+                             wish.wavelength_nm);
   const TileRenderer renderer(head, follower, camera, camera_from_head);
-  const TileMask mask = MarkTiles(head, camera, camera_from_head);
+  const int width = input.width(), height = input.height();
   const int side = head.options.samples_per_side;
   const bool adaptive = head.options.adaptive && side > 1;
 
-  ImageRgbF output = input;
-  std::vector<RenderCounts> counts_of(mask.content.size());
-  // Adaptive: what the ray through each pixel's centre met.
-  std::vector<CameraSample::Kind> kinds;
-  if (adaptive) {
-    kinds.assign(std::size_t(input.width) * std::size_t(input.height),
-                 CameraSample::Kind::kBackground);
-  }
-  const auto render_tile = [&](std::size_t tile, bool refine) {
+  std::vector<RenderCounts> counts_of(tiles.size());
+  std::vector<Glance> glances(adaptive ? std::size_t(width) * std::size_t(height) : 0);
+  const auto put_shadow = [&](std::size_t i) {
+    const std::size_t tile = tiles[i];
+    const PixelBox area = mask.Area(tile, width, height);
+    thread_local std::vector<CameraSample> samples;
+    thread_local std::vector<PixelState> states;
+    thread_local std::vector<Eigen::Vector3f> factor;
+    thread_local std::vector<CameraSample::Kind> kind;
+    std::vector<bool> wanted(std::size_t(kTileSide) * kTileSide);
+    for (int y = 0; y < kTileSide; ++y) {
+      for (int x = 0; x < kTileSide; ++x) {
+        wanted[std::size_t(y * kTileSide + x)] = OnShadowGrid(x, y);
+      }
+    }
+    factor.assign(wanted.size(), Eigen::Vector3f::Ones());
+    kind.assign(wanted.size(), CameraSample::Kind::kBackground);
+    for (const bool grid : {true, false}) {
+      if (!grid) FillShadowGrid(area, factor, kind, wanted);
+      PlaceSamples(area, 1, wanted, samples);
+      states.assign(wanted.size(), PixelState{});
+      renderer.Trace(samples, kTileShadow, states);
+      for (const CameraSample& s : samples) {
+        factor[s.pixel] = s.direct;
+        kind[s.pixel] = s.kind;
+      }
+    }
+    for (int y = area.y0; y < area.y1; ++y) {
+      for (int x = area.x0; x < area.x1; ++x) {
+        const std::size_t pixel = std::size_t((y - area.y0) * kTileSide + (x - area.x0));
+        glances[std::size_t(y) * std::size_t(width) + std::size_t(x)] = {kind[pixel], 0};
+        if ((factor[pixel].array() == 1.0f).all()) continue;
+        ++counts_of[i].shadowed_pixels;
+        canvas.Put(x, y, factor[pixel].cwiseProduct(input.Pixel(x, y)));
+      }
+    }
+  };
+  const auto render_tile = [&](std::size_t i, bool refine) {
+    const std::size_t tile = tiles[i];
     const std::uint8_t content = mask.content[tile];
-    if (content == 0) return;
-    const int column = int(tile) % mask.columns, row = int(tile) / mask.columns;
-    const TileArea area{column * kTileSide, row * kTileSide,
-                        std::min((column + 1) * kTileSide, input.width),
-                        std::min((row + 1) * kTileSide, input.height)};
+    if (content == kTileShadow && adaptive && head.baked_shadow) {
+      if (!refine) put_shadow(i);
+      return;
+    }
+    const PixelBox area = mask.Area(tile, width, height);
     std::vector<bool> wanted;
     if (refine) {
       if (content == kTileShadow) return;
-      wanted = PixelsToRefine(area, input.width, input.height, kinds);
+      wanted = PixelsToRefine(area, width, height, glances);
       if (std::find(wanted.begin(), wanted.end(), true) == wanted.end()) return;
     }
     // The face's own pixels need no second sample: equation (2) is taken once a pixel.
     const int here = content == kTileShadow || (adaptive && !refine) ? 1 : side;
     thread_local std::vector<CameraSample> samples;
+    thread_local std::vector<PixelState> states;
+    thread_local std::vector<PixelSum> sums;
     PlaceSamples(area, here, wanted, samples);
-    std::vector<PixelState> states(std::size_t(kTileSide) * kTileSide);
+    states.assign(std::size_t(kTileSide) * kTileSide, PixelState{});
     for (const CameraSample& s : samples) {
       const std::uint32_t x = std::uint32_t(s.x), y = std::uint32_t(s.y);
       states[s.pixel].seed = y * 7919u + x * 104729u;
     }
     renderer.Trace(samples, content, states);
-    std::vector<PixelSum> sums(states.size());
+    sums.assign(states.size(), PixelSum{});
     const float share = 1.0f / float(here * here);
     for (const CameraSample& s : samples) sums[s.pixel].Add(s, share);
-    RenderCounts& count = counts_of[tile];
+    RenderCounts& count = counts_of[i];
     for (int y = area.y0; y < area.y1; ++y) {
       for (int x = area.x0; x < area.x1; ++x) {
         const std::size_t pixel = std::size_t((y - area.y0) * kTileSide + (x - area.x0));
@@ -254,42 +405,39 @@ ImageRgbF Compositor::RenderPass(const ImageRgbF& input, const Camera& camera,
           count.shadowed_pixels += sum.changed && !sum.lens && !sum.frame;
         }
         count.filled_samples += states[pixel].filled;
-        if (frame_share != nullptr) {
-          (*frame_share)[std::size_t(y) * std::size_t(input.width) + std::size_t(x)] =
+        if (wish.frame_share != nullptr) {
+          (*wish.frame_share)[std::size_t(y) * std::size_t(width) + std::size_t(x)] =
               sum.frame_share;
         }
-        float* out = output.at(x, y);
-        const float* own = input.at(x, y);
-        for (int c = 0; c < 3; ++c) {
-          out[c] = sum.changed ? sum.inserted[c] + sum.direct[c] * own[c] : own[c];
-        }
+        // A refined pixel may have been changed by its first sample alone.
+        if (!sum.changed && !refine) continue;
+        const Eigen::Vector3f own = input.Pixel(x, y);
+        canvas.Put(x, y, sum.changed ? sum.inserted + sum.direct.cwiseProduct(own) : own);
       }
     }
     if (adaptive && !refine) {
       for (const CameraSample& s : samples) {
-        kinds[std::size_t(s.y) * std::size_t(input.width) + std::size_t(s.x)] = s.kind;
+        const bool frame = s.kind == CameraSample::Kind::kFrame;
+        glances[std::size_t(s.y) * std::size_t(width) + std::size_t(s.x)] = {
+            s.kind, frame ? CodeFromLinear(s.inserted.mean()) : std::uint8_t{0}};
       }
     }
   };
-  tbb::parallel_for(std::size_t(0), mask.content.size(),
-                    [&](std::size_t tile) { render_tile(tile, false); });
+  tbb::parallel_for(std::size_t(0), tiles.size(), [&](std::size_t i) { render_tile(i, false); });
   if (adaptive) {
-    tbb::parallel_for(std::size_t(0), mask.content.size(),
-                      [&](std::size_t tile) { render_tile(tile, true); });
+    tbb::parallel_for(std::size_t(0), tiles.size(), [&](std::size_t i) { render_tile(i, true); });
   }
-  if (counts != nullptr) {
-    *counts = {};
-    for (const RenderCounts& c : counts_of) {
-      counts->lens_pixels += c.lens_pixels;
-      counts->frame_pixels += c.frame_pixels;
-      counts->shadowed_pixels += c.shadowed_pixels;
-      counts->filled_samples += c.filled_samples;
-    }
+  RenderCounts sum;
+  for (const RenderCounts& c : counts_of) {
+    sum.lens_pixels += c.lens_pixels;
+    sum.frame_pixels += c.frame_pixels;
+    sum.shadowed_pixels += c.shadowed_pixels;
+    sum.filled_samples += c.filled_samples;
   }
-  return output;
+  return sum;
 }
 
-EffectPlan Compositor::Plan(const ImageRgbF& input, const Camera& camera,
+EffectPlan Compositor::Plan(const InputPicture& input, const Camera& camera,
                             const Eigen::Isometry3d& camera_from_head,
                             const EffectChoice& choice) const {
   // The follower only lends its view of the picture: no shadow is lit for it.
@@ -356,7 +504,7 @@ ImageRgbaF Compositor::HitMap(const Camera& camera,
   return map;
 }
 
-double Compositor::MatchExposure(const ImageRgbF& input, const Camera& camera,
+double Compositor::MatchExposure(const InputPicture& input, const Camera& camera,
                                  const Eigen::Isometry3d& camera_from_head) const {
   constexpr double kSkinAlbedo = 0.4;
   const HeadScene& head = scene_->head;

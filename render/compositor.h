@@ -16,6 +16,7 @@
 #include "render/effect_plan.h"
 #include "render/environment.h"
 #include "render/grain.h"
+#include "render/input_picture.h"
 #include "render/lens_finish.h"
 
 namespace lorgnette {
@@ -53,6 +54,8 @@ struct CompositorOptions {
   CameraLook camera_look;        // of the video, for the effect kGrain
   double environment_scale = 1;  // radiance of the input image's 1.0 in units of the environment
 };
+
+struct TileMask;
 
 // What one call of Render met.
 struct RenderCounts {
@@ -92,9 +95,14 @@ class Compositor {
   ImageRgbF Render(const ImageRgbF& input, const Camera& camera,
                    const Eigen::Isometry3d& camera_from_head, RenderCounts* counts = nullptr,
                    const PictureEffects* effects = nullptr) const;
+  // The same from and to display-encoded pixels (render/color.h): DisplayFromLinear of the picture
+  // above, exactly, without a linear copy of the whole picture (dispersion and grain take one).
+  ImageRgb8 Render(const ImageRgb8& input, const Camera& camera,
+                   const Eigen::Isometry3d& camera_from_head, RenderCounts* counts = nullptr,
+                   const PictureEffects* effects = nullptr) const;
 
   // What this picture needs, by estimate and by wish (render/effect_plan.h).
-  EffectPlan Plan(const ImageRgbF& input, const Camera& camera,
+  EffectPlan Plan(const InputPicture& input, const Camera& camera,
                   const Eigen::Isometry3d& camera_from_head, const EffectChoice& choice) const;
 
   // What the ray through every pixel's centre reaches: R, G, B the head-space point in mm where it
@@ -102,7 +110,7 @@ class Compositor {
   ImageRgbaF HitMap(const Camera& camera, const Eigen::Isometry3d& camera_from_head) const;
 
   // The environment_scale that gives a grey face (albedo 0.4) the mean radiance it has in `input`.
-  double MatchExposure(const ImageRgbF& input, const Camera& camera,
+  double MatchExposure(const InputPicture& input, const Camera& camera,
                        const Eigen::Isometry3d& camera_from_head) const;
   void SetEnvironmentScale(double scale);
   void SetCameraLook(const CameraLook& look);
@@ -116,6 +124,11 @@ class Compositor {
   ImageRgbF RenderBands(const ImageRgbF& input, const Camera& camera,
                         const Eigen::Isometry3d& camera_from_head, const PictureEffects& effects,
                         RenderCounts* counts, std::vector<float>* frame_share) const;
+  class Canvas;
+  struct Wish;
+  RenderCounts Draw(const InputPicture& input, const TileMask& mask, const Camera& camera,
+                    const Eigen::Isometry3d& camera_from_head, const Wish& wish,
+                    Canvas& canvas) const;
   explicit Compositor(std::unique_ptr<Scene> scene);
   std::unique_ptr<Scene> scene_;
 };

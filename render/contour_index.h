@@ -21,6 +21,12 @@ class ContourIndex {
 
   // Exact (crossing number); false for a NaN.
   bool Contains(double x, double y) const;
+  // Contains and Clearance at once.
+  struct Place {
+    bool inside;
+    double clearance;
+  };
+  Place Locate(double x, double y) const;
   // Lower bounds of the distance to the boundary, at most one grid cell too small: from inside
   // (negative or 0 when that is not certain), and from outside.
   double Clearance(double x, double y) const;
@@ -40,14 +46,22 @@ class ContourIndex {
   Eigen::Vector2d low_{0, 0}, high_{0, 0};
   // Signed distance at the centre of the cell that holds (x, y).
   double CentreDistance(double x, double y) const;
+  bool CrossingsAreOdd(double x, double y) const;
   bool InGrid(double x, double y) const;
 
   // Cells over the bounding box and a border around it.
   Eigen::Vector2d grid_low_{0, 0};
   int columns_ = 0, rows_ = 0;
-  double cell_ = 1, half_diagonal_ = 0;
+  double cell_ = 1, inverse_cell_ = 1, half_diagonal_ = 0;
   std::vector<float> distance_;              // signed, of the cells' centres
   std::vector<std::vector<int>> row_edges_;  // edges that touch each row of cells
+  // Circles around runs of edges, which most lines pass by.
+  struct Run {
+    std::size_t first, end;  // edges
+    Eigen::Vector2d centre;
+    double radius;
+  };
+  std::vector<Run> runs_;
 };
 
 }  // namespace lorgnette

@@ -52,15 +52,15 @@ double CodeChange(const Eigen::Vector3f& change, const Eigen::Vector3f& darkest)
   return most;
 }
 
-Eigen::Vector3f PictureAt(const ImageRgbF& input, const Eigen::Vector2d& p) {
-  const int x = std::clamp(int(std::floor(p.x())), 0, input.width - 1);
-  const int y = std::clamp(int(std::floor(p.y())), 0, input.height - 1);
-  return Eigen::Map<const Eigen::Vector3f>(input.at(x, y));
+Eigen::Vector3f PictureAt(const InputPicture& input, const Eigen::Vector2d& p) {
+  const int x = std::clamp(int(std::floor(p.x())), 0, input.width() - 1);
+  const int y = std::clamp(int(std::floor(p.y())), 0, input.height() - 1);
+  return input.Pixel(x, y);
 }
 
 class Surveyor {
  public:
-  Surveyor(const HeadScene& head, const RayFollower& follower, const ImageRgbF& input,
+  Surveyor(const HeadScene& head, const RayFollower& follower, const InputPicture& input,
            const Camera& camera, const Eigen::Isometry3d& camera_from_head)
       : head_(head),
         follower_(follower),
@@ -72,9 +72,7 @@ class Surveyor {
             (head.options.world_from_camera * camera_from_head.rotation()).cast<float>()) {
     // Any light that a ray could find: the brightest of the environment and of the picture.
     brightest_ = float(head.options.environment_scale) * head.brightest.greatest();
-    for (std::size_t i = 0; i + 2 < input.data.size(); i += 3) {
-      brightest_ = brightest_.cwiseMax(Eigen::Map<const Eigen::Vector3f>(&input.data[i]));
-    }
+    brightest_ = brightest_.cwiseMax(input.Brightest());
   }
 
   LensSurvey Survey(std::size_t lens) const {
@@ -138,8 +136,8 @@ class Surveyor {
     const Eigen::Vector2d pixel = camera_.Project(in_camera);
     // A lens beside the picture has no pixels; its border counts as far as a sample reaches.
     const double reach = 3 + 0.1 * PixelsPerMm(solid) * (solid.high() - solid.low()).norm();
-    if (pixel.x() < -reach || pixel.y() < -reach || pixel.x() > input_.width + reach ||
-        pixel.y() > input_.height + reach) {
+    if (pixel.x() < -reach || pixel.y() < -reach || pixel.x() > input_.width() + reach ||
+        pixel.y() > input_.height() + reach) {
       return;
     }
     ++survey.visible;
@@ -236,7 +234,7 @@ class Surveyor {
   static constexpr double kOutlineJump_px = 30;
   const HeadScene& head_;
   const RayFollower& follower_;
-  const ImageRgbF& input_;
+  const InputPicture& input_;
   const Camera& camera_;
   Eigen::Isometry3d camera_from_head_;
   Eigen::Vector3d eye_;
@@ -339,9 +337,9 @@ Result<EffectChoice> ParseEffects(std::string_view text) {
   }
 }
 
-EffectPlan PlanEffects(const HeadScene& head, const RayFollower& follower, const ImageRgbF& input,
-                       const Camera& camera, const Eigen::Isometry3d& camera_from_head,
-                       const EffectChoice& choice) {
+EffectPlan PlanEffects(const HeadScene& head, const RayFollower& follower,
+                       const InputPicture& input, const Camera& camera,
+                       const Eigen::Isometry3d& camera_from_head, const EffectChoice& choice) {
   const Surveyor surveyor(head, follower, input, camera, camera_from_head);
   EffectPlan plan;
   const double samples =

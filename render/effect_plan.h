@@ -19,6 +19,7 @@
 #include "base/image.h"
 #include "base/result.h"
 #include "render/effects.h"
+#include "render/input_picture.h"
 
 namespace lorgnette {
 
@@ -59,9 +60,9 @@ struct EffectPlan {
 };
 
 // The plan of one picture. `follower` holds the picture and the light of this frame.
-EffectPlan PlanEffects(const HeadScene& head, const RayFollower& follower, const ImageRgbF& input,
-                       const Camera& camera, const Eigen::Isometry3d& camera_from_head,
-                       const EffectChoice& choice);
+EffectPlan PlanEffects(const HeadScene& head, const RayFollower& follower,
+                       const InputPicture& input, const Camera& camera,
+                       const Eigen::Isometry3d& camera_from_head, const EffectChoice& choice);
 
 // A report as JSON text: an array of {effect, region, shift_px, code_values, on, reason, cost_ms}.
 std::string EffectPlanJson(const EffectPlan& plan);

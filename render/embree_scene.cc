@@ -34,10 +34,10 @@ RTCGeometry NewGeometry(RTCDevice device, const TriangleMesh& mesh, bool moves) 
 
 constexpr std::size_t kGeometries = 3;
 
-RTCIntersectContext CoherentContext() {
+RTCIntersectContext Context(RTCIntersectContextFlags flags) {
   RTCIntersectContext context;
   rtcInitIntersectContext(&context);
-  context.flags = RTC_INTERSECT_CONTEXT_FLAG_COHERENT;
+  context.flags = flags;
   return context;
 }
 
@@ -84,7 +84,10 @@ Result<EmbreeScene> EmbreeScene::Build(const TriangleMesh& face, const TriangleM
   }
   const auto attach = [&](RaySet set, std::initializer_list<SceneObject> objects) {
     RTCScene scene = rtcNewScene(state->device);
-    rtcSetSceneFlags(scene, RTC_SCENE_FLAG_ROBUST);
+    // A scene that moves keeps a tree for each mesh: the face's is refitted, the others stay.
+    const bool moves = set != RaySet::kFrame;
+    rtcSetSceneFlags(
+        scene, moves ? RTC_SCENE_FLAG_ROBUST | RTC_SCENE_FLAG_DYNAMIC : RTC_SCENE_FLAG_ROBUST);
     rtcSetSceneBuildQuality(scene, RTC_BUILD_QUALITY_MEDIUM);
     for (const SceneObject object : objects) {
       if (RTCGeometry geometry = state->geometries[std::size_t(object)]) {
@@ -144,7 +147,7 @@ bool EmbreeScene::Occluded(RaySet set, const Eigen::Vector3f& origin,
 }
 
 void EmbreeScene::Intersect16(RaySet set, RayPacket& p) const {
-  RTCIntersectContext context = CoherentContext();
+  RTCIntersectContext context = Context(RTC_INTERSECT_CONTEXT_FLAG_COHERENT);
   RTCRayHit16 q;
   std::memcpy(q.ray.org_x, p.ox, sizeof p.ox);
   std::memcpy(q.ray.org_y, p.oy, sizeof p.oy);
@@ -170,7 +173,8 @@ void EmbreeScene::Intersect16(RaySet set, RayPacket& p) const {
 }
 
 void EmbreeScene::Occluded16(RaySet set, RayPacket& p) const {
-  RTCIntersectContext context = CoherentContext();
+  // Rays of a hemisphere: measured 20 per cent faster so than as a coherent packet.
+  RTCIntersectContext context = Context(RTC_INTERSECT_CONTEXT_FLAG_INCOHERENT);
   RTCRay16 q;
   std::memcpy(q.org_x, p.ox, sizeof p.ox);
   std::memcpy(q.org_y, p.oy, sizeof p.oy);

@@ -133,6 +133,11 @@ LensSolid::LensSolid(const Lens& lens, const std::vector<Eigen::Vector2d>& conto
       lens_from_head_(head_from_lens.inverse()),
       back_rotation_(BackRotation(lens)),
       back_tilted_(lens.back_tilt_x != 0 || lens.back_tilt_y != 0) {
+  if (std::holds_alternative<SphereSurface>(lens.back.shape()) ||
+      std::holds_alternative<TorusSurface>(lens.back.shape())) {
+    const Eigen::Matrix2d curvature = lens.back.VertexCurvature();
+    back_bulges_inward_ = curvature.trace() >= 0 && curvature.determinant() >= 0;
+  }
   // The surfaces are monotone from vertex to edge along each meridian (or flat), so that their
   // extremes lie on the contour or at the vertex; a margin covers a vertex far from the contour.
   double low = 0, high = lens.center_thickness_mm;

@@ -40,6 +40,10 @@ class LensSolid {
   const Eigen::Vector3d& low() const { return low_; }
   const Eigen::Vector3d& high() const { return high_; }
 
+  // Whether the back surface nowhere curves away from the glass, as on every meniscus: a ray inside
+  // that leaves it does not meet it again.
+  bool back_bulges_inward() const { return back_bulges_inward_; }
+
   // First point of the glass on a ray that starts outside, beyond kStart_mm.
   std::optional<SolidHit> Enter(const Ray& ray) const;
   // Where a ray that starts inside (or on the boundary, heading in) meets the boundary.
@@ -57,6 +61,7 @@ class LensSolid {
   Eigen::Isometry3d head_from_lens_, lens_from_head_;
   Eigen::Matrix3d back_rotation_;
   bool back_tilted_ = false;
+  bool back_bulges_inward_ = false;
   Eigen::Vector3d low_, high_;
 };
 

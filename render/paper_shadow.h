@@ -27,8 +27,16 @@ class PaperShadow {
   static constexpr std::uint32_t kSets = 64;
 
  private:
+  // Directions about +z, padded to whole packets.
+  struct Set {
+    std::vector<float> x, y, z;
+  };
+  void Fill(const Set& set, std::size_t first, const Eigen::Vector3f& origin,
+            const Eigen::Matrix3f& basis, RayPacket& packet) const;
+
   bool sees_face_;
-  std::vector<std::vector<Eigen::Vector3f>> sets_;
+  std::size_t rays_;
+  std::vector<Set> sets_;
 };
 
 }  // namespace lorgnette

@@ -1,4 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
+#include <tbb/parallel_for.h>
+
 #include <algorithm>
 #include <cmath>
 
@@ -50,42 +52,43 @@ class WeightTable {
 
 }  // namespace
 
-Eigen::Vector3f SampleBilinear(const ImageRgbF& image, float x, float y) {
-  const float column = std::clamp(x - 0.5f, 0.0f, float(image.width - 1));
-  const float row = std::clamp(y - 0.5f, 0.0f, float(image.height - 1));
+Eigen::Vector3f SampleBilinear(const InputPicture& image, float x, float y) {
+  const float column = std::clamp(x - 0.5f, 0.0f, float(image.width() - 1));
+  const float row = std::clamp(y - 0.5f, 0.0f, float(image.height() - 1));
   const int x0 = int(column), y0 = int(row);
-  const int x1 = std::min(x0 + 1, image.width - 1), y1 = std::min(y0 + 1, image.height - 1);
+  const int x1 = std::min(x0 + 1, image.width() - 1), y1 = std::min(y0 + 1, image.height() - 1);
   const float fx = column - float(x0), fy = row - float(y0);
-  return (1 - fy) * ((1 - fx) * Texel(image.at(x0, y0)) + fx * Texel(image.at(x1, y0))) +
-         fy * ((1 - fx) * Texel(image.at(x0, y1)) + fx * Texel(image.at(x1, y1)));
+  return (1 - fy) * ((1 - fx) * image.Pixel(x0, y0) + fx * image.Pixel(x1, y0)) +
+         fy * ((1 - fx) * image.Pixel(x0, y1) + fx * image.Pixel(x1, y1));
 }
 
-Eigen::Vector3f SampleSharp(const ImageRgbF& image, float x, float y) {
-  const float column = std::clamp(x - 0.5f, 0.0f, float(image.width - 1));
-  const float row = std::clamp(y - 0.5f, 0.0f, float(image.height - 1));
+Eigen::Vector3f SampleSharp(const InputPicture& image, float x, float y) {
+  const float column = std::clamp(x - 0.5f, 0.0f, float(image.width() - 1));
+  const float row = std::clamp(y - 0.5f, 0.0f, float(image.height() - 1));
   const int x0 = int(column) - 3, y0 = int(row) - 3;
   static const WeightTable table;
   const float* wx = table.At(column - float(x0 + 3));
   const float* wy = table.At(row - float(y0 + 3));
-  // Four lanes at a time: the fourth reads on into the next pixel and is dropped.
-  if (x0 >= 0 && y0 >= 0 && x0 + kTaps < image.width && y0 + kTaps <= image.height) {
-    Eigen::Vector4f sum = Eigen::Vector4f::Zero();
-    for (int j = 0; j < kTaps; ++j) {
-      const float* texel = image.at(x0, y0 + j);
-      Eigen::Vector4f line = Eigen::Vector4f::Zero();
-      for (int i = 0; i < kTaps; ++i, texel += 3) {
-        line += wx[i] * Eigen::Map<const Eigen::Vector4f>(texel);
-      }
-      sum += wy[j] * line;
+  // Eight rows together, as 24 values side by side; then across.
+  if (image.IsReady(x0, y0, x0 + kTaps, y0 + kTaps)) {
+    constexpr int kValues = 3 * kTaps;
+    alignas(64) float line[kValues];
+    const float* from = image.Ready(x0, y0);
+    for (int i = 0; i < kValues; ++i) line[i] = wy[0] * from[i];
+    for (int j = 1; j < kTaps; ++j) {
+      from += image.stride();
+      for (int i = 0; i < kValues; ++i) line[i] += wy[j] * from[i];
     }
-    return sum.head<3>().cwiseMax(0.0f);
+    Eigen::Vector3f sum = Eigen::Vector3f::Zero();
+    for (int i = 0; i < kTaps; ++i) sum += wx[i] * Texel(line + 3 * i);
+    return sum.cwiseMax(0.0f);
   }
   Eigen::Vector3f sum = Eigen::Vector3f::Zero();
   for (int j = 0; j < kTaps; ++j) {
     for (int i = 0; i < kTaps; ++i) {
       sum += wx[i] * wy[j] *
-             Texel(image.at(std::clamp(x0 + i, 0, image.width - 1),
-                            std::clamp(y0 + j, 0, image.height - 1)));
+             image.Pixel(std::clamp(x0 + i, 0, image.width() - 1),
+                         std::clamp(y0 + j, 0, image.height() - 1));
     }
   }
   return sum.cwiseMax(0.0f);
@@ -93,31 +96,31 @@ Eigen::Vector3f SampleSharp(const ImageRgbF& image, float x, float y) {
 
 // Push and pull (Gortler et al. 1996): means of the known pixels go up a pyramid, and come down
 // into the holes.
-FilledPicture::FilledPicture(const ImageRgbF& input, const std::vector<std::uint8_t>& known) {
+FilledPicture::FilledPicture(const InputPicture& input, const std::vector<std::uint8_t>& known) {
   struct Level {
     ImageRgbF colour;
     std::vector<float> weight;
   };
   std::vector<Level> levels(1);
   Level& base = levels.front();
-  base.colour = ImageRgbF(ReducedSide(input.width), ReducedSide(input.height));
+  base.colour = ImageRgbF(ReducedSide(input.width()), ReducedSide(input.height()));
   base.weight.assign(known.size(), 0);
-  for (int y = 0; y < base.colour.height; ++y) {
+  tbb::parallel_for(0, base.colour.height, [&](int y) {
     for (int x = 0; x < base.colour.width; ++x) {
       const std::size_t i = std::size_t(y) * std::size_t(base.colour.width) + std::size_t(x);
       if (!known[i]) continue;
       Eigen::Vector3f sum = Eigen::Vector3f::Zero();
       float count = 0;
-      for (int v = y * kStep; v < std::min((y + 1) * kStep, input.height); ++v) {
-        for (int u = x * kStep; u < std::min((x + 1) * kStep, input.width); ++u, ++count) {
-          sum += Texel(input.at(u, v));
+      for (int v = y * kStep; v < std::min((y + 1) * kStep, input.height()); ++v) {
+        for (int u = x * kStep; u < std::min((x + 1) * kStep, input.width()); ++u, ++count) {
+          sum += input.Pixel(u, v);
         }
       }
       sum /= count;
       std::copy(sum.data(), sum.data() + 3, base.colour.at(x, y));
       base.weight[i] = 1;
     }
-  }
+  });
   while (levels.back().colour.width > 1 || levels.back().colour.height > 1) {
     const Level& fine = levels.back();
     Level coarse;

@@ -23,7 +23,7 @@ void Once(std::once_flag& flag, Make&& make) {
 
 }  // namespace
 
-PictureView::PictureView(const ImageRgbF& input, const Camera& camera,
+PictureView::PictureView(const InputPicture& input, const Camera& camera,
                          const Eigen::Isometry3d& camera_from_head, const EmbreeScene& scene,
                          const std::vector<Eigen::Vector3f>& face_vertices,
                          const std::vector<Eigen::Vector3f>& face_normals,
@@ -121,12 +121,37 @@ void PictureView::FillFace() const {
   const std::size_t n = vertices_.size();
   vertex_colours_.assign(n, Eigen::Vector3f::Zero());
   vertex_seen_.assign(n, 0);
-  tbb::parallel_for(std::size_t(0), n, [&](std::size_t i) {
-    const Eigen::Vector2f p = Project(vertices_[i]);
-    const Eigen::Vector3f sight = (eye_ - vertices_[i]).normalized();
-    if (!InsidePicture(p) || normals_[i].dot(sight) < kGrazing || !CameraSees(vertices_[i])) return;
-    vertex_seen_[i] = 1;
-    vertex_colours_[i] = SampleBilinear(input_, p.x(), p.y());
+  // Sixteen neighbours at a time look for the camera.
+  constexpr std::size_t kPacket = RayPacket::kSize;
+  tbb::parallel_for(std::size_t(0), (n + kPacket - 1) / kPacket, [&](std::size_t group) {
+    const std::size_t first = group * kPacket;
+    RayPacket packet;
+    Eigen::Vector2f at[kPacket];
+    bool any = false;
+    for (std::size_t k = 0; k < kPacket; ++k) {
+      const std::size_t i = std::min(first + k, n - 1);
+      at[k] = Project(vertices_[i]);
+      const Eigen::Vector3f to_eye = eye_ - vertices_[i];
+      const float distance = to_eye.norm();
+      const Eigen::Vector3f sight = to_eye / distance;
+      packet.valid[k] = first + k < n && InsidePicture(at[k]) && normals_[i].dot(sight) >= kGrazing;
+      any |= packet.valid[k] != 0;
+      packet.ox[k] = vertices_[i].x();
+      packet.oy[k] = vertices_[i].y();
+      packet.oz[k] = vertices_[i].z();
+      packet.near[k] = kVisibilityLift_mm;
+      packet.dx[k] = sight.x();
+      packet.dy[k] = sight.y();
+      packet.dz[k] = sight.z();
+      packet.far[k] = distance;
+    }
+    if (!any) return;
+    scene_.Occluded16(RaySet::kHead, packet);
+    for (std::size_t k = 0; k < kPacket; ++k) {
+      if (!packet.valid[k] || packet.far[k] < 0) continue;
+      vertex_seen_[first + k] = 1;
+      vertex_colours_[first + k] = SampleBilinear(input_, at[k].x(), at[k].y());
+    }
   });
   Eigen::Vector3d sum = Eigen::Vector3d::Zero();
   double count = 0;
@@ -140,32 +165,40 @@ void PictureView::FillFace() const {
   if (count > 0) face_mean_ = (sum / count).cast<float>();
 
   // Colour spreads over the mesh from what was seen, one ring of vertices a round.
-  std::vector<float> weight(n, 0.0f);
-  for (std::size_t i = 0; i < n; ++i) weight[i] = vertex_seen_[i];
+  std::vector<float> weight(vertex_seen_.begin(), vertex_seen_.end());
+  std::vector<Eigen::Vector3i> open;  // triangles with a corner that has no colour yet
+  const auto complete = [&](const Eigen::Vector3i& t) {
+    return weight[std::size_t(t[0])] > 0 && weight[std::size_t(t[1])] > 0 &&
+           weight[std::size_t(t[2])] > 0;
+  };
+  for (const Eigen::Vector3i& t : triangles_) {
+    if (!complete(t)) open.push_back(t);
+  }
+  std::vector<Eigen::Vector3f> next(n, Eigen::Vector3f::Zero());
+  std::vector<float> next_weight(n, 0.0f);
+  std::vector<std::size_t> reached;
   constexpr int kRounds = 48;
-  for (int round = 0; round < kRounds; ++round) {
-    std::vector<Eigen::Vector3f> next(n, Eigen::Vector3f::Zero());
-    std::vector<float> next_weight(n, 0.0f);
-    bool any = false;
-    for (const Eigen::Vector3i& t : triangles_) {
+  for (int round = 0; round < kRounds && !open.empty(); ++round) {
+    reached.clear();
+    for (const Eigen::Vector3i& t : open) {
       for (int a = 0; a < 3; ++a) {
         const std::size_t to = std::size_t(t[a]);
         if (weight[to] > 0) continue;
         for (int b = 1; b < 3; ++b) {
           const std::size_t from = std::size_t(t[(a + b) % 3]);
           if (weight[from] <= 0) continue;
+          if (next_weight[to] == 0) reached.push_back(to);
           next[to] += vertex_colours_[from];
           next_weight[to] += 1;
-          any = true;
         }
       }
     }
-    if (!any) break;
-    for (std::size_t i = 0; i < n; ++i) {
-      if (next_weight[i] <= 0) continue;
+    if (reached.empty()) break;
+    for (const std::size_t i : reached) {
       vertex_colours_[i] = next[i] / next_weight[i];
       weight[i] = 1;
     }
+    std::erase_if(open, complete);
   }
   for (std::size_t i = 0; i < n; ++i) {
     if (weight[i] <= 0) vertex_colours_[i] = face_mean_;

@@ -11,20 +11,21 @@
 #include "base/image.h"
 #include "base/mesh.h"
 #include "render/embree_scene.h"
+#include "render/input_picture.h"
 
 namespace lorgnette {
 
 // Value at a pixel position (centres at .5) of a picture whose pixels are box means: a cubic
 // through point values, which come from the means by the first terms of the inverse of the box.
 // Clamped at the border and at 0. Magnified eyes stay crisp.
-Eigen::Vector3f SampleSharp(const ImageRgbF& image, float x, float y);
-Eigen::Vector3f SampleBilinear(const ImageRgbF& image, float x, float y);
+Eigen::Vector3f SampleSharp(const InputPicture& image, float x, float y);
+Eigen::Vector3f SampleBilinear(const InputPicture& image, float x, float y);
 
 // The input reduced by kFillStep, with holes (and all around) filled from their borders.
 class FilledPicture {
  public:
   // known: one byte a reduced pixel, 1 where the picture shows what is wanted.
-  FilledPicture(const ImageRgbF& input, const std::vector<std::uint8_t>& known);
+  FilledPicture(const InputPicture& input, const std::vector<std::uint8_t>& known);
   Eigen::Vector3f Sample(float x, float y) const;  // in pixels of the input
   static constexpr int kStep = 8;
   static int ReducedSide(int side) { return (side + kStep - 1) / kStep; }
@@ -37,7 +38,7 @@ class FilledPicture {
 class PictureView {
  public:
   // background_depth_mm: of the plane behind the head, camera z.
-  PictureView(const ImageRgbF& input, const Camera& camera,
+  PictureView(const InputPicture& input, const Camera& camera,
               const Eigen::Isometry3d& camera_from_head, const EmbreeScene& scene,
               const std::vector<Eigen::Vector3f>& face_vertices,
               const std::vector<Eigen::Vector3f>& face_normals,
@@ -60,8 +61,8 @@ class PictureView {
 
  private:
   bool InsidePicture(const Eigen::Vector2f& p) const {
-    return p.x() >= 0 && p.y() >= 0 && p.x() <= float(input_.width) &&
-           p.y() <= float(input_.height);
+    return p.x() >= 0 && p.y() >= 0 && p.x() <= float(input_.width()) &&
+           p.y() <= float(input_.height());
   }
   bool Faces(const Eigen::Vector3i& triangle, const SceneHit& hit,
              const Eigen::Vector3f& point) const;
@@ -69,7 +70,7 @@ class PictureView {
   void FillFace() const;
   void FillBackground() const;
 
-  const ImageRgbF& input_;
+  InputPicture input_;
   Camera camera_;
   Eigen::Matrix3f rotation_;
   Eigen::Vector3f translation_, eye_;

@@ -54,7 +54,7 @@ bool LensesOverlap(const HeadScene& head, const Camera& camera,
 
 }  // namespace
 
-RayFollower::RayFollower(const HeadScene& head, const ImageRgbF& input, const Camera& camera,
+RayFollower::RayFollower(const HeadScene& head, const InputPicture& input, const Camera& camera,
                          const Eigen::Isometry3d& camera_from_head, const PictureEffects& effects,
                          std::optional<double> wavelength_nm)
     : head_(head),
@@ -70,6 +70,7 @@ RayFollower::RayFollower(const HeadScene& head, const ImageRgbF& input, const Ca
     if (!effects.lens[i][Effect::kCoating]) looks_.back().front = looks_.back().back = {};
     if (!effects.lens[i][Effect::kTint]) looks_.back().tint = {};
   }
+  frame_z_ = head.frame.frame_from_head.matrix().row(2).cast<float>();
   const HeadLight light =
       LightAt(head.directions, head.cells, world_from_head_, float(head.options.environment_scale));
   if (head.baked_shadow && effects.rest[Effect::kShadow])
@@ -77,7 +78,8 @@ RayFollower::RayFollower(const HeadScene& head, const ImageRgbF& input, const Ca
   frame_irradiance_ = head.frame_light.Relight(light, picture_.face_mean());
   lenses_overlap_ = LensesOverlap(head, camera, camera_from_head);
   if (head.gather_lattice && effects.rest[Effect::kShadow]) {
-    GatherScene gather{head.scene, head.face, head.directions, light, picture_.vertex_colours()};
+    GatherScene gather{head.scene, head.face, head.directions, light, picture_.vertex_colours(),
+                       {}};
     gather.frame_radiance = FrameRadiance();
     if (effects.Any(Effect::kLensLight)) {
       gather.lenses = &head.lenses;
@@ -117,41 +119,67 @@ float RayFollower::FrameOpacity(const SceneHit& hit, const Eigen::Vector3f& poin
 }
 
 float RayFollower::TempleShare(const Eigen::Vector3f& point) const {
-  const double z = (head_.frame.frame_from_head * point.cast<double>()).z();
-  return 1 - SmoothStep(-z, -head_.frame.fade_start_z, -head_.frame.fade_end_z);
+  const float z = frame_z_.head<3>().dot(point) + frame_z_.w();
+  return 1 - SmoothStep(-double(z), -head_.frame.fade_start_z, -head_.frame.fade_end_z);
+}
+
+std::optional<RayFollower::GlossRay> RayFollower::Gloss(const SceneHit& hit,
+                                                        const Eigen::Vector3f& point,
+                                                        const Eigen::Vector3f& direction) const {
+  const FrameSurface& frame = head_.frame;
+  if (frame.materials[frame.material_of[hit.triangle]].specular.isZero()) return std::nullopt;
+  const Eigen::Vector3i& t = frame.mesh.triangles[hit.triangle];
+  const float w[3] = {1 - hit.u - hit.v, hit.u, hit.v};
+  Eigen::Vector3f normal = Eigen::Vector3f::Zero();
+  for (int k = 0; k < 3; ++k) {
+    normal += w[k] * frame.mesh.normals[std::size_t(t[k])].cast<float>();
+  }
+  normal.normalize();
+  const float along = normal.dot(direction);
+  const Eigen::Vector3f mirrored = direction - 2 * along * normal;
+  if (!(mirrored.dot(normal) * along < 0)) return std::nullopt;
+  constexpr float kLift_mm = 0.1f;
+  return GlossRay{point - std::copysign(kLift_mm, along) * normal, mirrored,
+                  std::min(std::abs(along), 1.0f)};
+}
+
+bool RayFollower::GetsAway(const GlossRay& ray) const {
+  return !head_.scene.Occluded(RaySet::kAll, ray.origin, ray.direction, 0, kInfinity);
+}
+
+bool RayFollower::GlossGetsAway(const SceneHit& hit, const Eigen::Vector3f& point,
+                                const Eigen::Vector3f& direction) const {
+  const auto ray = Gloss(hit, point, direction);
+  return ray && GetsAway(*ray);
+}
+
+Eigen::Vector3f RayFollower::GroundEdge() const {
+  return kGroundEdgeAlbedo * float(head_.options.environment_scale) * head_.environment_mean;
 }
 
 Eigen::Vector3f RayFollower::Frame(const SceneHit& hit, const Eigen::Vector3f& point,
-                                   const Eigen::Vector3f& direction) const {
+                                   const Eigen::Vector3f& direction,
+                                   std::optional<bool> gloss) const {
   const FrameSurface& frame = head_.frame;
   const std::uint16_t part = frame.material_of[hit.triangle];
   const FrameMaterial& material = frame.materials[part];
   const Eigen::Vector3i& t = frame.mesh.triangles[hit.triangle];
   const float w[3] = {1 - hit.u - hit.v, hit.u, hit.v};
-  Eigen::Vector3f irradiance = Eigen::Vector3f::Zero(), normal = Eigen::Vector3f::Zero();
-  for (int k = 0; k < 3; ++k) {
-    irradiance += w[k] * frame_irradiance_[std::size_t(t[k])];
-    normal += w[k] * frame.mesh.normals[std::size_t(t[k])].cast<float>();
-  }
+  Eigen::Vector3f irradiance = Eigen::Vector3f::Zero();
+  for (int k = 0; k < 3; ++k) irradiance += w[k] * frame_irradiance_[std::size_t(t[k])];
   Eigen::Vector3f colour = float(1 / kPi) * material.diffuse.cwiseProduct(irradiance);
-  if (material.specular.isZero() || !effects_.rest[Effect::kGloss]) return colour;
-  normal.normalize();
-  const float cosine = std::min(std::abs(normal.dot(direction)), 1.0f);
-  const Eigen::Vector3f mirrored = direction - 2 * normal.dot(direction) * normal;
-  constexpr float kLift_mm = 0.1f;
-  if (mirrored.dot(normal) * normal.dot(direction) < 0 &&
-      !head_.scene.Occluded(RaySet::kAll,
-                            point - std::copysign(kLift_mm, normal.dot(direction)) * normal,
-                            mirrored, 0, kInfinity)) {
-    // Schlick's rise of reflectance toward grazing.
-    const float rise = std::pow(1 - cosine, 5.0f);
-    const Eigen::Vector3f strength =
-        material.specular + rise * (Eigen::Vector3f::Ones() - material.specular);
-    colour += float(head_.options.environment_scale) *
-              strength.cwiseProduct(
-                  frame.gloss[frame.gloss_of[part]].Radiance(world_from_head_ * mirrored));
-  }
-  return colour;
+  if (gloss == false || !effects_.rest[Effect::kGloss]) return colour;
+  const auto ray = Gloss(hit, point, direction);
+  if (!ray) return colour;
+  if (!gloss && !GetsAway(*ray)) return colour;
+  // Schlick's rise of reflectance toward grazing.
+  const float off = 1 - ray->cosine;
+  const float rise = off * off * off * off * off;
+  const Eigen::Vector3f strength =
+      material.specular + rise * (Eigen::Vector3f::Ones() - material.specular);
+  return colour + float(head_.options.environment_scale) *
+                      strength.cwiseProduct(frame.gloss[frame.gloss_of[part]].Radiance(
+                          world_from_head_ * ray->direction));
 }
 
 Eigen::Vector3f RayFollower::FaceRatio(const SceneHit& hit, const Eigen::Vector3f& point,
@@ -310,8 +338,7 @@ Eigen::Vector3f RayFollower::Inside(std::size_t lens, const Ray& ray, double wei
   }
   const Eigen::Vector3f tint = looks_[lens].tint.Between(ray.origin, hit->point);
   if (hit->face == SolidFace::kWall && head_.options.finish.edge == EdgeFinish::kGround) {
-    return kGroundEdgeAlbedo * float(head_.options.environment_scale) *
-           tint.cwiseProduct(head_.environment_mean);
+    return tint.cwiseProduct(GroundEdge());
   }
   const double index = index_[lens];
   const double cosine = std::min(hit->normal.dot(ray.direction), 1.0);

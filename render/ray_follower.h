@@ -20,12 +20,14 @@ struct PixelState {
   long filled = 0;
   // Paper mode shades one point a pixel; nullopt until a ray of the pixel met the face.
   std::optional<Eigen::Vector3f> face_ratio;
+  // Whether the mirrored ray of the frame, seen directly, gets away; nullopt until one was traced.
+  std::optional<bool> frame_gloss;
 };
 
 class RayFollower {
  public:
   //   wavelength_nm  whose index the glass has; nullopt: the medium's own (d line)
-  RayFollower(const HeadScene& head, const ImageRgbF& input, const Camera& camera,
+  RayFollower(const HeadScene& head, const InputPicture& input, const Camera& camera,
               const Eigen::Isometry3d& camera_from_head, const PictureEffects& effects,
               std::optional<double> wavelength_nm = std::nullopt);
 
@@ -69,8 +71,16 @@ class RayFollower {
 
   Eigen::Vector3f EnvironmentLight(const Eigen::Vector3f& direction) const;
   // Frame radiance toward -direction, and its opacity (the temples' feathering).
+  // Colour of the frame.
+  //   gloss  GlossGetsAway, where it is known
   Eigen::Vector3f Frame(const SceneHit& hit, const Eigen::Vector3f& point,
-                        const Eigen::Vector3f& direction) const;
+                        const Eigen::Vector3f& direction,
+                        std::optional<bool> gloss = std::nullopt) const;
+  // Whether the frame's mirrored ray meets neither frame nor head.
+  bool GlossGetsAway(const SceneHit& hit, const Eigen::Vector3f& point,
+                     const Eigen::Vector3f& direction) const;
+  // The edge wall as EdgeFinish::kGround.
+  Eigen::Vector3f GroundEdge() const;
   float FrameOpacity(const SceneHit& hit, const Eigen::Vector3f& point) const;
   // Radiance of the frame's triangles at their corners, without highlights.
   std::vector<Eigen::Vector3f> FrameRadiance() const;
@@ -87,6 +97,13 @@ class RayFollower {
                   bool from_glass) const;
   // Whether a ray inside the glass (lens frame) next meets the wall, or the rim's reach of it.
   bool ReachesEdge(std::size_t lens, const Ray& ray) const;
+  struct GlossRay {
+    Eigen::Vector3f origin, direction;
+    float cosine;  // between ray and normal
+  };
+  std::optional<GlossRay> Gloss(const SceneHit& hit, const Eigen::Vector3f& point,
+                                const Eigen::Vector3f& direction) const;
+  bool GetsAway(const GlossRay& ray) const;
   // 1 at the front, 0 at the ears: how much of a temple beside this point is left.
   float TempleShare(const Eigen::Vector3f& point) const;
   Eigen::Vector3f Faded(const Eigen::Vector3f& ratio, const Eigen::Vector3f& point) const;
@@ -99,6 +116,7 @@ class RayFollower {
   std::vector<double> index_;    // one a lens
   std::vector<LensLook> looks_;  // one a lens
   Eigen::Matrix3f world_from_head_;
+  Eigen::Vector4f frame_z_{0, 0, 0, 0};  // of a point in head space (x, y, z, 1)
   bool lenses_overlap_ = false;
   PictureView picture_;
   std::vector<Eigen::Vector3f> ratios_;            // one a baked point

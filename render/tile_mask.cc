@@ -6,6 +6,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <mutex>
 
 namespace lorgnette {
 namespace {
@@ -56,7 +57,7 @@ class Marker {
                       });
     return projected;
   }
-  void Mark(const Box& box, std::uint8_t bits) {
+  void Mark(const Box& box, std::uint8_t bits, std::vector<std::uint8_t>& content) const {
     int c0 = 0, r0 = 0, c1 = mask.columns - 1, r1 = mask.rows - 1;
     if (!box.everywhere) {
       if (box.x1 + kMargin_px < 0 || box.y1 + kMargin_px < 0 ||
@@ -74,9 +75,33 @@ class Marker {
     }
     for (int row = r0; row <= r1; ++row) {
       for (int column = c0; column <= c1; ++column) {
-        mask.content[std::size_t(row) * std::size_t(mask.columns) + std::size_t(column)] |= bits;
+        content[std::size_t(row) * std::size_t(mask.columns) + std::size_t(column)] |= bits;
       }
     }
+  }
+
+  // The boxes of those triangles of which `takes` is true, by the projections of their vertices.
+  template <typename Takes>
+  void MarkTriangles(const std::vector<Eigen::Vector3i>& triangles,
+                     const std::vector<Eigen::Vector2f>& projected, std::uint8_t bits,
+                     Takes&& takes) {
+    std::mutex mutex;
+    tbb::parallel_for(tbb::blocked_range<std::size_t>(0, triangles.size(), 8192),
+                      [&](const tbb::blocked_range<std::size_t>& range) {
+                        std::vector<std::uint8_t> content(mask.content.size(), 0);
+                        for (std::size_t t = range.begin(); t < range.end(); ++t) {
+                          if (!takes(t)) continue;
+                          Box box;
+                          for (int k = 0; k < 3; ++k) {
+                            box.Add(projected[std::size_t(triangles[t][k])]);
+                          }
+                          Mark(box, bits, content);
+                        }
+                        const std::lock_guard<std::mutex> lock(mutex);
+                        for (std::size_t i = 0; i < content.size(); ++i) {
+                          mask.content[i] |= content[i];
+                        }
+                      });
   }
 
   TileMask mask;
@@ -89,15 +114,29 @@ class Marker {
 
 }  // namespace
 
+PixelBox TileMask::Area(std::size_t tile, int width, int height) const {
+  const int x0 = int(tile) % columns * kTileSide, y0 = int(tile) / columns * kTileSide;
+  return {x0, y0, std::min(x0 + kTileSide, width), std::min(y0 + kTileSide, height)};
+}
+
+PixelBox TileMask::Bounds() const {
+  PixelBox box{columns * kTileSide, rows * kTileSide, 0, 0};
+  for (int row = 0; row < rows; ++row) {
+    for (int column = 0; column < columns; ++column) {
+      if (content[std::size_t(row) * std::size_t(columns) + std::size_t(column)] == 0) continue;
+      box = {std::min(box.x0, column * kTileSide), std::min(box.y0, row * kTileSide),
+             std::max(box.x1, (column + 1) * kTileSide), std::max(box.y1, (row + 1) * kTileSide)};
+    }
+  }
+  return box.empty() ? PixelBox{} : box;
+}
+
 TileMask MarkTiles(const HeadScene& head, const Camera& camera,
                    const Eigen::Isometry3d& camera_from_head) {
   Marker marker(camera, camera_from_head);
   const std::vector<Eigen::Vector2f> frame = marker.ProjectAll(head.frame.mesh.positions);
-  for (const Eigen::Vector3i& t : head.frame.mesh.triangles) {
-    Marker::Box box;
-    for (int k = 0; k < 3; ++k) box.Add(frame[std::size_t(t[k])]);
-    marker.Mark(box, kTileFrame);
-  }
+  marker.MarkTriangles(head.frame.mesh.triangles, frame, kTileFrame,
+                       [](std::size_t) { return true; });
   for (std::size_t i = 0; i < head.lenses.size(); ++i) {
     const LensSolid& lens = head.lenses[i];
     Marker::Box box;
@@ -107,17 +146,14 @@ TileMask MarkTiles(const HeadScene& head, const Camera& camera,
                               corner & 4 ? lens.low().z() : lens.high().z());
       box.Add(marker.Project((lens.head_from_lens() * p).cast<float>()));
     }
-    marker.Mark(box, i == 0 ? kTileRightLens : kTileLeftLens);
+    marker.Mark(box, i == 0 ? kTileRightLens : kTileLeftLens, marker.mask.content);
   }
   const bool everywhere = head.paper_shadow.has_value() || head.gather_lattice.has_value();
   if (!everywhere && !head.baked_shadow) return std::move(marker.mask);
   const std::vector<Eigen::Vector2f> face = marker.ProjectAll(head.face_vertices);
-  for (std::size_t t = 0; t < head.face_triangles.size(); ++t) {
-    if (!everywhere && !head.baked_shadow->touched(std::uint32_t(t))) continue;
-    Marker::Box box;
-    for (int k = 0; k < 3; ++k) box.Add(face[std::size_t(head.face_triangles[t][k])]);
-    marker.Mark(box, kTileShadow);
-  }
+  marker.MarkTriangles(head.face_triangles, face, kTileShadow, [&](std::size_t t) {
+    return everywhere || head.baked_shadow->touched(std::uint32_t(t));
+  });
   return std::move(marker.mask);
 }
 

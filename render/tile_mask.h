@@ -9,6 +9,7 @@
 
 #include "base/camera.h"
 #include "render/head_scene.h"
+#include "render/input_picture.h"
 
 namespace lorgnette {
 
@@ -24,6 +25,10 @@ enum TileContent : std::uint8_t {
 struct TileMask {
   int columns = 0, rows = 0;
   std::vector<std::uint8_t> content;  // TileContent bits; 0: the tile stays as it is
+  // The pixels of a tile, inside a picture of this size.
+  PixelBox Area(std::size_t tile, int width, int height) const;
+  // Box around the marked tiles, in pixels (it may reach past the picture); empty if none is.
+  PixelBox Bounds() const;
 };
 
 // Conservative: no pixel outside marked tiles changes. What lies behind the camera or across its

@@ -58,23 +58,27 @@ struct Bundle {
     directions.push_back(direction);
     far.push_back(length);
   }
+  void Fill(std::size_t first, RayPacket& packet) const {
+    const std::size_t n = origins.size();
+    for (std::size_t k = 0; k < RayPacket::kSize; ++k) {
+      const std::size_t i = std::min(first + k, n - 1);
+      packet.valid[k] = first + k < n;
+      packet.ox[k] = origins[i].x();
+      packet.oy[k] = origins[i].y();
+      packet.oz[k] = origins[i].z();
+      packet.near[k] = 0;
+      packet.dx[k] = directions[i].x();
+      packet.dy[k] = directions[i].y();
+      packet.dz[k] = directions[i].z();
+      packet.far[k] = far[i];
+    }
+  }
   void Trace(const EmbreeScene& scene, RaySet set) {
     const std::size_t n = origins.size();
     hits.assign(n, SceneHit{});
     RayPacket packet;
     for (std::size_t first = 0; first < n; first += RayPacket::kSize) {
-      for (std::size_t k = 0; k < RayPacket::kSize; ++k) {
-        const std::size_t i = std::min(first + k, n - 1);
-        packet.valid[k] = first + k < n;
-        packet.ox[k] = origins[i].x();
-        packet.oy[k] = origins[i].y();
-        packet.oz[k] = origins[i].z();
-        packet.near[k] = 0;
-        packet.dx[k] = directions[i].x();
-        packet.dy[k] = directions[i].y();
-        packet.dz[k] = directions[i].z();
-        packet.far[k] = far[i];
-      }
+      Fill(first, packet);
       scene.Intersect16(set, packet);
       for (std::size_t k = 0; k < RayPacket::kSize && first + k < n; ++k) {
         if (packet.object[k] == SceneObject::kNone) continue;
@@ -120,6 +124,13 @@ struct TileRenderer::Regular {
   Eigen::Vector3f first_point, first_normal, inside, second_point, second_normal, exit;
 };
 
+// Where a ray goes that the second surface sent back.
+enum class BackWay : std::uint8_t {
+  kOut,    // through the first surface
+  kWall,   // to the ground edge wall
+  kExact,  // anywhere
+};
+
 struct TileRenderer::Batch {
   Bundle primary;
   std::vector<std::uint8_t>
@@ -134,6 +145,7 @@ struct TileRenderer::Batch {
   RayColumns back_in, back_hit, back_out;
   std::vector<std::uint8_t> back_status;
   std::vector<float> back_reflectance;
+  std::vector<BackWay> back_way;
   // Head space.
   Bundle rim, main, front_reflection, back_reflection;
   std::vector<std::uint32_t> main_of, front_of, back_of;
@@ -149,7 +161,8 @@ TileRenderer::TileRenderer(const HeadScene& head, const RayFollower& follower, c
       eye_(camera_from_head.inverse().translation()) {}
 TileRenderer::~TileRenderer() = default;
 
-void TileRenderer::TracePrimary(Batch& batch, std::vector<CameraSample>& samples) const {
+void TileRenderer::TracePrimary(RaySet set, Batch& batch,
+                                std::vector<CameraSample>& samples) const {
   const Eigen::Vector3f eye = eye_.cast<float>();
   const float inverse_fx = float(1 / camera_.fx), inverse_fy = float(1 / camera_.fy);
   batch.primary.Clear();
@@ -158,7 +171,7 @@ void TileRenderer::TracePrimary(Batch& batch, std::vector<CameraSample>& samples
                             (s.y - float(camera_.cy)) * inverse_fy, 1);
     batch.primary.Add(eye, (head_from_camera_ * d).normalized());
   }
-  batch.primary.Trace(head_.scene, RaySet::kAll);
+  batch.primary.Trace(head_.scene, set);
 }
 
 void TileRenderer::Direct(std::size_t i, const Batch& batch, std::vector<CameraSample>& samples,
@@ -174,7 +187,10 @@ void TileRenderer::Direct(std::size_t i, const Batch& batch, std::vector<CameraS
     opacity = follower_.FrameOpacity(hit, point);
     if (opacity > 0) {
       sample.kind = CameraSample::Kind::kFrame;
-      sample.inserted = opacity * follower_.Frame(hit, point, direction);
+      // One mirrored ray a pixel tells whether the gloss gets away.
+      std::optional<bool>& gloss = pixels[sample.pixel].frame_gloss;
+      if (!gloss) gloss = follower_.GlossGetsAway(hit, point, direction);
+      sample.inserted = opacity * follower_.Frame(hit, point, direction, gloss);
     }
     if (opacity < 1) {
       hit = head_.scene.Intersect(RaySet::kHead, origin, direction, 0, kInfinity);
@@ -294,9 +310,10 @@ void TileRenderer::TraceLens(std::size_t lens, Batch& batch, std::vector<CameraS
     const std::uint32_t i = batch.sample_of[k];
     if (batch.lens_of[i] == 3) continue;
     const Eigen::Vector3f p1 = batch.first.point(k), p2 = batch.inside.point(k);
-    const bool through = batch.status[k] == std::uint8_t(RayStatus::kOk) &&
-                         contour.Contains(double(p1.x()), double(p1.y())) &&
-                         contour.Contains(double(p2.x()), double(p2.y()));
+    const ContourIndex::Place at1 = contour.Locate(double(p1.x()), double(p1.y()));
+    const ContourIndex::Place at2 = contour.Locate(double(p2.x()), double(p2.y()));
+    const bool through =
+        batch.status[k] == std::uint8_t(RayStatus::kOk) && at1.inside && at2.inside;
     if (!through || batch.lens_of[i] != 0 || batch.in.columns[5][k] <= 0) {
       batch.lens_of[i] = 3;
       continue;
@@ -307,8 +324,7 @@ void TileRenderer::TraceLens(std::size_t lens, Batch& batch, std::vector<CameraS
     batch.lens_of[i] = std::uint8_t(lens + 1);
     Regular r;
     r.sample = i;
-    r.near_rim = contour.Clearance(double(p1.x()), double(p1.y())) < rim ||
-                 contour.Clearance(double(p2.x()), double(p2.y())) < rim;
+    r.near_rim = at1.clearance < rim || at2.clearance < rim;
     r.first_point = p1;
     r.first_normal = batch.first.vector(k);
     r.inside = batch.inside.vector(k);
@@ -349,10 +365,10 @@ void TileRenderer::TraceLens(std::size_t lens, Batch& batch, std::vector<CameraS
     if (r.near_rim) {
       const std::size_t j = rim_next++;
       if (const SceneHit& hit = batch.rim.hits[j]; hit.hit()) {
+        const Eigen::Vector3f& in_glass = batch.rim.directions[j];
+        const Eigen::Vector3f point = batch.rim.origins[j] + hit.distance * in_glass;
         sample.kind = CameraSample::Kind::kFrame;
-        sample.inserted += r.entered.cwiseProduct(
-            follower_.Frame(hit, batch.rim.origins[j] + hit.distance * batch.rim.directions[j],
-                            batch.rim.directions[j]));
+        sample.inserted += r.entered.cwiseProduct(follower_.Frame(hit, point, in_glass));
         continue;
       }
     }
@@ -377,31 +393,70 @@ void TileRenderer::TraceLens(std::size_t lens, Batch& batch, std::vector<CameraS
   if (m > 0) {
     TraceFaceBatch(solid.lens(), LensFace::kFront, index, batch.back_in.const_view(), m, face);
   }
+  // A ray that passes the contour before it meets the front has met the wall, unless the back
+  // surface bends into its way. On its way there it may meet the frame.
+  const bool ground = head_.options.finish.edge == EdgeFinish::kGround &&
+                      solid.back_bulges_inward() && look.tint.clear() &&
+                      follower_.effects(lens)[Effect::kRings];
+  batch.rim.Clear();
+  batch.back_way.clear();
+  for (std::size_t j = 0; j < m; ++j) {
+    const Eigen::Vector3f p = batch.back_hit.point(j);
+    const ContourIndex::Place at = contour.Locate(double(p.x()), double(p.y()));
+    if (batch.back_status[j] == std::uint8_t(RayStatus::kOk) && at.clearance >= rim) {
+      batch.back_way.push_back(BackWay::kOut);
+      continue;
+    }
+    batch.back_way.push_back(BackWay::kExact);
+    if (!ground || at.inside || batch.back_status[j] == std::uint8_t(RayStatus::kMissesSurface)) {
+      continue;
+    }
+    const Eigen::Vector3f& from = batch.regular[batch.back_of[j]].second_point;
+    const Eigen::Vector3f along = batch.back_in.vector(j);
+    const auto crossing =
+        contour.FirstCrossing(from.head<2>().cast<double>(), along.head<2>().cast<double>(), 0,
+                              double((p - from).norm()));
+    if (!crossing) continue;
+    batch.back_way.back() = BackWay::kWall;
+    batch.rim.Add(to_head(from), head_from_lens * along, float(crossing->t));
+  }
+  batch.rim.Trace(head_.scene, RaySet::kFrame);
+  const Eigen::Vector3f wall = follower_.GroundEdge();
   batch.back_weight.clear();
   std::size_t kept = 0;
+  rim_next = 0;
   for (std::size_t j = 0; j < m; ++j) {
     const std::uint32_t k = batch.back_of[j];
     const Regular& r = batch.regular[k];
-    const Eigen::Vector3f p = batch.back_hit.point(j);
     Eigen::Vector3f weight = r.back;
+    const Eigen::Vector3f p = batch.back_hit.point(j);
     CameraSample& sample = samples[r.sample];
-    if (batch.back_status[j] != std::uint8_t(RayStatus::kOk) ||
-        contour.Clearance(double(p.x()), double(p.y())) < rim) {
+    const BackWay way = batch.back_way[j];
+    if (way == BackWay::kWall) {
+      const std::size_t at = rim_next++;
+      if (const SceneHit& hit = batch.rim.hits[at]; hit.hit()) {
+        const Eigen::Vector3f& direction = batch.rim.directions[at];
+        const Eigen::Vector3f point = batch.rim.origins[at] + hit.distance * direction;
+        sample.inserted += weight.cwiseProduct(follower_.Frame(hit, point, direction));
+      } else {
+        sample.inserted += weight.cwiseProduct(wall);
+      }
+    } else if (way == BackWay::kExact) {
       const double most = double(weight.maxCoeff());
       if (most < head_.options.least_weight || !follower_.effects(lens)[Effect::kRings]) continue;
       const Ray chain{r.second_point.cast<double>(),
                       batch.back_in.vector(j).cast<double>().normalized()};
       sample.inserted +=
           weight.cwiseProduct(follower_.Inside(lens, chain, most, 2, pixels[sample.pixel]));
-      continue;
+    } else {
+      if (!look.tint.clear()) {
+        weight =
+            weight.cwiseProduct(look.tint.Between(r.second_point.cast<double>(), p.cast<double>()));
+      }
+      batch.back_of[kept++] = k;
+      batch.back_weight.push_back(weight);
+      batch.back_reflection.Add(to_head(p), head_from_lens * batch.back_out.vector(j));
     }
-    if (!look.tint.clear()) {
-      weight =
-          weight.cwiseProduct(look.tint.Between(r.second_point.cast<double>(), p.cast<double>()));
-    }
-    batch.back_of[kept++] = k;
-    batch.back_weight.push_back(weight);
-    batch.back_reflection.Add(to_head(p), head_from_lens * batch.back_out.vector(j));
   }
   batch.back_of.resize(kept);
 
@@ -446,7 +501,9 @@ void TileRenderer::TraceLens(std::size_t lens, Batch& batch, std::vector<CameraS
 void TileRenderer::Trace(std::vector<CameraSample>& samples, std::uint8_t content,
                          std::vector<PixelState>& pixels) const {
   thread_local Batch batch;
-  TracePrimary(batch, samples);
+  // No ray of such a tile meets the frame.
+  const RaySet set = content == kTileShadow ? RaySet::kHead : RaySet::kAll;
+  TracePrimary(set, batch, samples);
   batch.lens_of.assign(samples.size(), 0);
   const std::uint8_t lens_bits[2] = {kTileRightLens, kTileLeftLens};
   for (std::size_t lens = 0; lens < head_.lenses.size(); ++lens) {

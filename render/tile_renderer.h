@@ -39,7 +39,7 @@ class TileRenderer {
   struct Batch;
   void Share(std::size_t lens, float enter, float leave, const Eigen::Vector3f& direction,
              Regular& ray) const;
-  void TracePrimary(Batch& batch, std::vector<CameraSample>& samples) const;
+  void TracePrimary(RaySet set, Batch& batch, std::vector<CameraSample>& samples) const;
   void TraceLens(std::size_t lens, Batch& batch, std::vector<CameraSample>& samples,
                  std::vector<PixelState>& pixels) const;
   void TraceExactly(std::size_t sample, const Batch& batch, std::vector<CameraSample>& samples,

@@ -6,6 +6,7 @@
 
 #include <cmath>
 
+#include "render/color.h"
 #include "tests/render/render_test_scene.h"
 
 namespace lorgnette {
@@ -94,14 +95,39 @@ TEST(Compositor, GivesTheSamePixelsOnAnyNumberOfThreads) {
   const ImageRgbF input = Pattern(kWidth, kHeight);
   const test::View view = Front();
   ImageRgbF results[2];
-  for (const int threads : {1, 4}) {
-    const tbb::global_control control(tbb::global_control::max_allowed_parallelism,
-                                      std::size_t(threads));
-    results[threads > 1] = Make(WithRims({}), test::Wall(400, 0, 20),
-                                Environment::Constant({1, 0.8f, 0.6f}), CompositorOptions{})
-                               .Render(input, view.camera, view.camera_from_head);
+  for (const bool adaptive : {false, true}) {
+    CompositorOptions options;
+    options.adaptive = adaptive;
+    for (const int threads : {1, 4}) {
+      const tbb::global_control control(tbb::global_control::max_allowed_parallelism,
+                                        std::size_t(threads));
+      results[threads > 1] = Make(WithRims({}), test::Wall(400, 0, 20),
+                                  Environment::Constant({1, 0.8f, 0.6f}), options)
+                                 .Render(input, view.camera, view.camera_from_head);
+    }
+    EXPECT_EQ(results[0].data, results[1].data);
   }
-  EXPECT_EQ(results[0].data, results[1].data);
+}
+
+// Strong lenses, so that rays read the picture far from where they entered it.
+TEST(Compositor, DrawsTheSameFromAndToDisplayEncodedPixels) {
+  const ImageRgb8 input = DisplayFromLinear(Pattern(kWidth, kHeight));
+  const test::View view = test::ViewFrom(0, 0, 500, kWidth, kHeight, 500);
+  for (const bool adaptive : {false, true}) {
+    CompositorOptions options;
+    options.adaptive = adaptive;
+    const Compositor compositor = Make(WithRims({-14, 0, 0, 1.6}), test::Wall(150, 0, 20),
+                                       Environment::Constant({1, 0.8f, 0.6f}), options);
+    RenderCounts counts, display_counts;
+    const ImageRgbF linear =
+        compositor.Render(LinearFromDisplay(input), view.camera, view.camera_from_head, &counts);
+    const ImageRgb8 display =
+        compositor.Render(input, view.camera, view.camera_from_head, &display_counts);
+    EXPECT_EQ(display.data, DisplayFromLinear(linear).data) << adaptive;
+    EXPECT_NE(display.data, input.data);
+    EXPECT_EQ(counts.lens_pixels, display_counts.lens_pixels);
+    EXPECT_EQ(counts.filled_samples, display_counts.filled_samples);
+  }
 }
 
 double Psnr(const ImageRgbF& a, const ImageRgbF& b) {
@@ -178,6 +204,58 @@ TEST(Compositor, WorksAtTheEdgesOfWhatACameraCanDo) {
   // The face beside the picture.
   const test::View beside = test::ViewFrom(2000, 0, 500, 32, 16, 100);
   EXPECT_EQ(compositor.Render(input, beside.camera, beside.camera_from_head).data, input.data);
+}
+
+TEST(Compositor, WorksWithAFaceThatFillsThePictureOrLeavesIt) {
+  const Compositor compositor =
+      Make(WithRims({}), test::Wall(400, 0), Environment::Constant({1, 1, 1}), CompositorOptions{});
+  const ImageRgb8 input = DisplayFromLinear(Pattern(96, 64));
+  // One eye fills the picture; the left half of the face is outside it; the camera is so near that
+  // parts of the temples and of the face lie behind it.
+  for (const test::View& view :
+       {test::ViewFrom(-32, 0, 200, 96, 64, 600), test::ViewFrom(-60, 0, 400, 96, 64, 300),
+        test::ViewFrom(0, 0, 21, 96, 64, 40)}) {
+    RenderCounts counts;
+    const ImageRgb8 output = compositor.Render(input, view.camera, view.camera_from_head, &counts);
+    EXPECT_EQ(output.width, 96);
+    EXPECT_GT(counts.lens_pixels + counts.shadowed_pixels, 100);
+    EXPECT_NE(output.data, input.data);
+  }
+}
+
+TEST(Compositor, LeavesAnEightKPictureAloneBesideTheFace) {
+  ImageRgb8 input(7680, 4320);
+  std::fill(input.data.begin(), input.data.end(), std::uint8_t{90});
+  // A face 90 pixels wide in the upper left corner.
+  test::View view = test::ViewFrom(0, 0, 500, 7680, 4320, 300);
+  view.camera.cx = 200;
+  view.camera.cy = 150;
+  const ImageRgb8 output =
+      Make(WithRims({}), test::Wall(150, 0), Environment::Constant({1, 1, 1}), CompositorOptions{})
+          .Render(input, view.camera, view.camera_from_head);
+  EXPECT_FALSE(std::equal(output.at(0, 150), output.at(400, 150), input.at(0, 150)));
+  EXPECT_TRUE(std::equal(output.at(0, 400), output.at(0, 4319), input.at(0, 400)));
+}
+
+TEST(Compositor, PassesOverTrianglesWithoutArea) {
+  const ImageRgb8 input = DisplayFromLinear(Pattern(kWidth, kHeight));
+  const test::View view = Front();
+  TriangleMesh wall = test::Wall(400, 0), spoilt = wall;
+  const int last = int(spoilt.positions.size()) - 1;
+  spoilt.triangles.emplace_back(last, last, last);          // a point
+  spoilt.triangles.emplace_back(last, last - 1, last);      // a line
+  spoilt.triangles.emplace_back(last, last - 1, last - 2);  // three points in a row
+  wall.normals.clear();
+  spoilt.normals.clear();
+  const Environment light = Environment::Constant({1, 1, 1});
+  const ImageRgb8 whole = Make(WithRims({}), wall, light, CompositorOptions{})
+                              .Render(input, view.camera, view.camera_from_head);
+  const ImageRgb8 picture = Make(WithRims({}), spoilt, light, CompositorOptions{})
+                                .Render(input, view.camera, view.camera_from_head);
+  // Rays through an edge may be told that they met its other side.
+  for (std::size_t i = 0; i < whole.data.size(); ++i) {
+    ASSERT_NEAR(int(picture.data[i]), int(whole.data[i]), 1);
+  }
 }
 
 TEST(Compositor, RefusesAFaceWithoutTriangles) {

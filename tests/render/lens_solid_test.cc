@@ -31,6 +31,43 @@ TEST(ContourIndex, AgreesWithTheEllipseAboutInside) {
   }
 }
 
+// Against every edge of a star, whose concave outline most lines cross several times.
+TEST(ContourIndex, FindsTheNearestCrossingOfAnyLine) {
+  std::vector<Eigen::Vector2d> star;
+  for (int i = 0; i < 150; ++i) {
+    const double angle = 2 * kPi * i / 150, radius = 20 + 6 * std::cos(9 * angle);
+    star.emplace_back(radius * std::cos(angle), radius * std::sin(angle));
+  }
+  const ContourIndex index(star);
+  std::mt19937 random(7);
+  std::uniform_real_distribution<double> place(-30, 30);
+  int crossings = 0;
+  for (int i = 0; i < 4000; ++i) {
+    const Eigen::Vector2d p(place(random), place(random));
+    const Eigen::Vector2d d = 0.05 * Eigen::Vector2d(place(random), place(random));
+    const double t_min = i % 3 == 0 ? 3 : 0, t_max = i % 5 == 0 ? 20 : 1e9;
+    double nearest = t_max;
+    for (std::size_t k = 0; k < star.size(); ++k) {
+      const Eigen::Vector2d a = star[k], ab = star[(k + 1) % star.size()] - a;
+      const double across = d.x() * ab.y() - d.y() * ab.x();
+      const double t = ((a - p).x() * ab.y() - (a - p).y() * ab.x()) / across;
+      const double s = ((a - p).x() * d.y() - (a - p).y() * d.x()) / across;
+      if (s >= 0 && s < 1 && t > t_min && t < nearest) nearest = t;
+    }
+    const auto found = index.FirstCrossing(p, d, t_min, t_max);
+    ASSERT_EQ(found.has_value(), nearest < t_max) << i;
+    // Both are quotients of cross products of some 1e3 mm^2 with errors of a few units.
+    if (found) {
+      EXPECT_NEAR(found->t, nearest, 1e-9 * (1 + nearest));
+    }
+    crossings += found.has_value();
+    const ContourIndex::Place at = index.Locate(p.x(), p.y());
+    EXPECT_EQ(at.inside, index.Contains(p.x(), p.y()));
+    EXPECT_EQ(at.clearance, index.Clearance(p.x(), p.y()));
+  }
+  EXPECT_GT(crossings, 1000);
+}
+
 TEST(ContourIndex, FindsWhereALineLeaves) {
   const ContourIndex square({{-10, -10}, {10, -10}, {10, 10}, {-10, 10}});
   const auto crossing = square.FirstCrossing({0, 1}, {2, 0}, 0, 100);
