@@ -280,12 +280,11 @@ class Assembly {
       compositor_.SetCameraLook(MeasureCameraLook(LinearFromDisplay(seen)));
       exposed_ = true;
     }
-    const EffectPlan plan =
-        compositor_.Plan(seen, track_.camera, job.tracked->camera_from_head, request_.effects);
-    CountEffects(plan);
+    EffectPlan plan;
     RenderCounts counts;
     ImageRgb8 drawn = compositor_.Render(seen, track_.camera, job.tracked->camera_from_head,
-                                         &counts, &plan.effects);
+                                         request_.effects, plan, &counts);
+    CountEffects(plan);
     result_.counts.lens_pixels += counts.lens_pixels;
     result_.counts.frame_pixels += counts.frame_pixels;
     result_.counts.shadowed_pixels += counts.shadowed_pixels;

@@ -20,11 +20,6 @@ namespace lorgnette {
 namespace {
 
 constexpr float kInfinity = std::numeric_limits<float>::infinity();
-// Dominant wavelengths of the Rec.709 primaries (their chromaticities against D65's), and the width
-// of a channel's band when it takes several.
-constexpr double kChannel_nm[3] = {611.4, 549.1, 464.2};
-constexpr double kBand_nm = 50;
-
 // First glass on a ray of head space.
 struct Entry {
   std::size_t lens;
@@ -197,121 +192,140 @@ void Compositor::SetEnvironmentScale(double scale) {
 // Where the pixels of a picture go; of those that nobody puts, the input's stay.
 class Compositor::Canvas {
  public:
-  explicit Canvas(ImageRgbF& linear) : linear_(&linear) {}
+  // A part of the picture in linear light, whose first pixel is the picture's (x0, y0).
+  Canvas(ImageRgbF& linear, int x0, int y0) : linear_(&linear), x0_(x0), y0_(y0) {}
   explicit Canvas(ImageRgb8& display) : display_(&display) {}
+  // Receives the frame's share of each pixel of the linear part.
+  std::vector<float>* frame_share = nullptr;
+
   void Put(int x, int y, const Eigen::Vector3f& light) {
     if (linear_ != nullptr) {
-      std::copy_n(light.data(), 3, linear_->at(x, y));
+      std::copy_n(light.data(), 3, linear_->at(x - x0_, y - y0_));
     } else {
       for (int c = 0; c < 3; ++c) display_->at(x, y)[c] = CodeFromLinear(light[c]);
     }
   }
+  void PutFrameShare(int x, int y, float share) {
+    if (frame_share == nullptr) return;
+    (*frame_share)[std::size_t(y - y0_) * std::size_t(linear_->width) + std::size_t(x - x0_)] =
+        share;
+  }
 
  private:
   ImageRgbF* linear_ = nullptr;
+  int x0_ = 0, y0_ = 0;
   ImageRgb8* display_ = nullptr;
 };
 
-// What a pass draws beside the picture's pixels.
-struct Compositor::Wish {
-  PictureEffects effects;
-  std::optional<double> wavelength_nm;
-  std::vector<float>* frame_share = nullptr;  // receives the frame's share of each pixel
+// One picture, as the passes over it share it.
+struct Compositor::Sitting {
+  Sitting(const HeadScene& head, const InputPicture& picture, const TileMask& tiles,
+          const Camera& from, const Eigen::Isometry3d& pose)
+      : input(picture),
+        mask(tiles),
+        camera(from),
+        camera_from_head(pose),
+        view(input, camera, camera_from_head, head.scene, head.face_vertices, head.face_normals,
+             head.face_triangles,
+             head.options.background_depth_mm.value_or(camera_from_head.translation().z() +
+                                                       head.options.background_distance_mm)) {}
+  InputPicture input;
+  TileMask mask;
+  Camera camera;
+  Eigen::Isometry3d camera_from_head;
+  PictureView view;
 };
+
+Compositor::Sitting Compositor::Sit(const ImageRgb8& input, const Camera& camera,
+                                    const Eigen::Isometry3d& camera_from_head) const {
+  const TileMask mask = MarkTiles(scene_->head, camera, camera_from_head);
+  // Refracted rays mostly read near by; what lies farther is decoded when it is read.
+  const PixelBox box = Grown(mask.Bounds(), 2 * kTileSide);
+  return {scene_->head, InputPicture(input, box), mask, camera, camera_from_head};
+}
 
 ImageRgbF Compositor::Render(const ImageRgbF& input, const Camera& camera,
                              const Eigen::Isometry3d& camera_from_head, RenderCounts* counts,
                              const PictureEffects* effects) const {
-  LG_CHECK_EQ(input.width, camera.width);
-  LG_CHECK_EQ(input.height, camera.height);
-  const CompositorOptions& options = scene_->head.options;
-  const PictureEffects drawn = effects != nullptr ? *effects : PictureEffects::Of(options.effects);
-  const bool match = drawn.rest[Effect::kGrain];
-  std::vector<float> frame_share;
-  if (match) frame_share.assign(input.data.size() / 3, 0);
-  ImageRgbF output;
-  if (drawn.Any(Effect::kDispersion)) {
-    output =
-        RenderBands(input, camera, camera_from_head, drawn, counts, match ? &frame_share : nullptr);
-  } else {
-    output = RenderPass(input, camera, camera_from_head, drawn, std::nullopt, counts,
-                        match ? &frame_share : nullptr);
-  }
-  if (match) {
-    // A seed of the pose: another frame has other grain, another run the same.
-    std::uint32_t seed = 2166136261u;
-    for (const double v : camera_from_head.matrix().reshaped()) {
-      seed = (seed ^ std::uint32_t(std::int64_t(v * 1e6))) * 16777619u;
-    }
-    ApplyCameraLook(options.camera_look, frame_share, seed, output);
-  }
-  return output;
-}
-
-// One picture a wavelength; a channel is the mean of those in its own band.
-ImageRgbF Compositor::RenderBands(const ImageRgbF& input, const Camera& camera,
-                                  const Eigen::Isometry3d& camera_from_head,
-                                  const PictureEffects& effects, RenderCounts* counts,
-                                  std::vector<float>* frame_share) const {
-  ImageRgbF output(input.width, input.height);
-  std::vector<bool> changed(output.data.size(), false);
-  const int bands = scene_->head.options.wavelengths / 3;
-  for (int c = 0; c < 3; ++c) {
-    for (int k = 0; k < bands; ++k) {
-      const double at_nm = kChannel_nm[c] + kBand_nm * ((k + 0.5) / bands - 0.5);
-      const bool middle = c == 1 && k == bands / 2;
-      const ImageRgbF pass = RenderPass(input, camera, camera_from_head, effects, at_nm,
-                                        middle ? counts : nullptr, middle ? frame_share : nullptr);
-      for (std::size_t i = std::size_t(c); i < output.data.size(); i += 3) {
-        changed[i] = changed[i] || pass.data[i] != input.data[i];
-        output.data[i] += pass.data[i];
-      }
-    }
-  }
-  for (std::size_t i = 0; i < output.data.size(); ++i) {
-    output.data[i] = changed[i] ? output.data[i] / float(bands) : input.data[i];
-  }
-  return output;
-}
-
-ImageRgbF Compositor::RenderPass(const ImageRgbF& input, const Camera& camera,
-                                 const Eigen::Isometry3d& camera_from_head,
-                                 const PictureEffects& effects, std::optional<double> wavelength_nm,
-                                 RenderCounts* counts, std::vector<float>* frame_share) const {
+  const HeadScene& head = scene_->head;
+  const Sitting sitting(head, input, MarkTiles(head, camera, camera_from_head), camera,
+                        camera_from_head);
   ImageRgbF output = input;
-  Canvas canvas(output);
-  const TileMask mask = MarkTiles(scene_->head, camera, camera_from_head);
-  const RenderCounts met =
-      Draw(input, mask, camera, camera_from_head, {effects, wavelength_nm, frame_share}, canvas);
-  if (counts != nullptr) *counts = met;
+  DrawLinear(sitting, effects != nullptr ? *effects : PictureEffects::Of(head.options.effects),
+             counts, output, 0, 0);
   return output;
 }
 
 ImageRgb8 Compositor::Render(const ImageRgb8& input, const Camera& camera,
                              const Eigen::Isometry3d& camera_from_head, RenderCounts* counts,
                              const PictureEffects* effects) const {
-  const PictureEffects drawn =
-      effects != nullptr ? *effects : PictureEffects::Of(scene_->head.options.effects);
-  if (drawn.Any(Effect::kDispersion) || drawn.rest[Effect::kGrain]) {
-    return DisplayFromLinear(
-        Render(LinearFromDisplay(input), camera, camera_from_head, counts, &drawn));
+  return DrawDisplay(
+      input, Sit(input, camera, camera_from_head),
+      effects != nullptr ? *effects : PictureEffects::Of(scene_->head.options.effects), counts);
+}
+
+ImageRgb8 Compositor::Render(const ImageRgb8& input, const Camera& camera,
+                             const Eigen::Isometry3d& camera_from_head, const EffectChoice& choice,
+                             EffectPlan& plan, RenderCounts* counts) const {
+  const Sitting sitting = Sit(input, camera, camera_from_head);
+  plan = PlanEffects(scene_->head, sitting.view, sitting.input, camera, camera_from_head, choice);
+  return DrawDisplay(input, sitting, plan.effects, counts);
+}
+
+void Compositor::DrawLinear(const Sitting& sitting, const PictureEffects& effects,
+                            RenderCounts* counts, ImageRgbF& picture, int x0, int y0) const {
+  Canvas canvas(picture, x0, y0);
+  std::vector<float> frame_share;
+  const bool match = effects.rest[Effect::kGrain];
+  if (match) {
+    frame_share.assign(picture.data.size() / 3, 0);
+    canvas.frame_share = &frame_share;
   }
-  ImageRgb8 output = input;
-  Canvas canvas(output);
-  const TileMask mask = MarkTiles(scene_->head, camera, camera_from_head);
-  PixelBox box = mask.Bounds();
-  // Refracted rays mostly read near by; what lies farther is decoded when it is read.
-  constexpr int kBorder = 2 * kTileSide;
-  box = {box.x0 - kBorder, box.y0 - kBorder, box.x1 + kBorder, box.y1 + kBorder};
-  const RenderCounts met = Draw(InputPicture(input, box), mask, camera, camera_from_head,
-                                {drawn, std::nullopt, nullptr}, canvas);
+  const RenderCounts met = Draw(sitting, effects, canvas);
   if (counts != nullptr) *counts = met;
+  if (!match) return;
+  // A seed of the pose: another frame has other grain, another run the same.
+  std::uint32_t seed = 2166136261u;
+  for (const double v : sitting.camera_from_head.matrix().reshaped()) {
+    seed = (seed ^ std::uint32_t(std::int64_t(v * 1e6))) * 16777619u;
+  }
+  ApplyCameraLook(scene_->head.options.camera_look, frame_share, seed, x0, y0, picture);
+}
+
+ImageRgb8 Compositor::DrawDisplay(const ImageRgb8& input, const Sitting& sitting,
+                                  const PictureEffects& effects, RenderCounts* counts) const {
+  ImageRgb8 output = input;
+  if (!effects.rest[Effect::kGrain]) {
+    Canvas canvas(output);
+    const RenderCounts met = Draw(sitting, effects, canvas);
+    if (counts != nullptr) *counts = met;
+    return output;
+  }
+  // Blur and grain work in linear light, on the part that changes.
+  const int border = CameraLookReach(scene_->head.options.camera_look);
+  const PixelBox box = Clipped(Grown(sitting.mask.Bounds(), border), input.width, input.height);
+  if (box.empty()) return output;
+  ImageRgbF part(box.x1 - box.x0, box.y1 - box.y0);
+  tbb::parallel_for(0, part.height, [&](int y) {
+    LinearFromCodes(input.at(box.x0, box.y0 + y), 3 * std::size_t(part.width), part.at(0, y));
+  });
+  DrawLinear(sitting, effects, counts, part, box.x0, box.y0);
+  tbb::parallel_for(0, part.height, [&](int y) {
+    for (int x = 0; x < part.width; ++x) {
+      for (int c = 0; c < 3; ++c) {
+        output.at(box.x0 + x, box.y0 + y)[c] = CodeFromLinear(part.at(x, y)[c]);
+      }
+    }
+  });
   return output;
 }
 
-RenderCounts Compositor::Draw(const InputPicture& input, const TileMask& mask, const Camera& camera,
-                              const Eigen::Isometry3d& camera_from_head, const Wish& wish,
+RenderCounts Compositor::Draw(const Sitting& sitting, const PictureEffects& effects,
                               Canvas& canvas) const {
+  const InputPicture& input = sitting.input;
+  const TileMask& mask = sitting.mask;
+  const Camera& camera = sitting.camera;
+  const Eigen::Isometry3d& camera_from_head = sitting.camera_from_head;
   LG_CHECK_EQ(input.width(), camera.width);
   LG_CHECK_EQ(input.height(), camera.height);
   std::vector<std::size_t> tiles;
@@ -320,8 +334,7 @@ RenderCounts Compositor::Draw(const InputPicture& input, const TileMask& mask, c
   }
   if (tiles.empty()) return {};
   const HeadScene& head = scene_->head;
-  const RayFollower follower(head, input, camera, camera_from_head, wish.effects,
-                             wish.wavelength_nm);
+  const RayFollower follower(head, sitting.view, camera, camera_from_head, effects);
   const TileRenderer renderer(head, follower, camera, camera_from_head);
   const int width = input.width(), height = input.height();
   const int side = head.options.samples_per_side;
@@ -405,10 +418,7 @@ RenderCounts Compositor::Draw(const InputPicture& input, const TileMask& mask, c
           count.shadowed_pixels += sum.changed && !sum.lens && !sum.frame;
         }
         count.filled_samples += states[pixel].filled;
-        if (wish.frame_share != nullptr) {
-          (*wish.frame_share)[std::size_t(y) * std::size_t(width) + std::size_t(x)] =
-              sum.frame_share;
-        }
+        canvas.PutFrameShare(x, y, sum.frame_share);
         // A refined pixel may have been changed by its first sample alone.
         if (!sum.changed && !refine) continue;
         const Eigen::Vector3f own = input.Pixel(x, y);
@@ -440,10 +450,9 @@ RenderCounts Compositor::Draw(const InputPicture& input, const TileMask& mask, c
 EffectPlan Compositor::Plan(const InputPicture& input, const Camera& camera,
                             const Eigen::Isometry3d& camera_from_head,
                             const EffectChoice& choice) const {
-  // The follower only lends its view of the picture: no shadow is lit for it.
-  const RayFollower follower(scene_->head, input, camera, camera_from_head,
-                             PictureEffects::Of(EffectSet::None()));
-  return PlanEffects(scene_->head, follower, input, camera, camera_from_head, choice);
+  const HeadScene& head = scene_->head;
+  const Sitting sitting(head, input, {}, camera, camera_from_head);
+  return PlanEffects(head, sitting.view, input, camera, camera_from_head, choice);
 }
 
 ImageRgbaF Compositor::HitMap(const Camera& camera,

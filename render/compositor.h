@@ -96,10 +96,14 @@ class Compositor {
                    const Eigen::Isometry3d& camera_from_head, RenderCounts* counts = nullptr,
                    const PictureEffects* effects = nullptr) const;
   // The same from and to display-encoded pixels (render/color.h): DisplayFromLinear of the picture
-  // above, exactly, without a linear copy of the whole picture (dispersion and grain take one).
+  // above, exactly, without a linear copy of the whole picture.
   ImageRgb8 Render(const ImageRgb8& input, const Camera& camera,
                    const Eigen::Isometry3d& camera_from_head, RenderCounts* counts = nullptr,
                    const PictureEffects* effects = nullptr) const;
+  // ... with the effects that the picture needs; `plan` receives them and why.
+  ImageRgb8 Render(const ImageRgb8& input, const Camera& camera,
+                   const Eigen::Isometry3d& camera_from_head, const EffectChoice& choice,
+                   EffectPlan& plan, RenderCounts* counts = nullptr) const;
 
   // What this picture needs, by estimate and by wish (render/effect_plan.h).
   EffectPlan Plan(const InputPicture& input, const Camera& camera,
@@ -117,18 +121,15 @@ class Compositor {
 
  private:
   struct Scene;
-  ImageRgbF RenderPass(const ImageRgbF& input, const Camera& camera,
-                       const Eigen::Isometry3d& camera_from_head, const PictureEffects& effects,
-                       std::optional<double> wavelength_nm, RenderCounts* counts,
-                       std::vector<float>* frame_share) const;
-  ImageRgbF RenderBands(const ImageRgbF& input, const Camera& camera,
-                        const Eigen::Isometry3d& camera_from_head, const PictureEffects& effects,
-                        RenderCounts* counts, std::vector<float>* frame_share) const;
   class Canvas;
-  struct Wish;
-  RenderCounts Draw(const InputPicture& input, const TileMask& mask, const Camera& camera,
-                    const Eigen::Isometry3d& camera_from_head, const Wish& wish,
-                    Canvas& canvas) const;
+  struct Sitting;
+  Sitting Sit(const ImageRgb8& input, const Camera& camera,
+              const Eigen::Isometry3d& camera_from_head) const;
+  void DrawLinear(const Sitting& sitting, const PictureEffects& effects, RenderCounts* counts,
+                  ImageRgbF& picture, int x0, int y0) const;
+  ImageRgb8 DrawDisplay(const ImageRgb8& input, const Sitting& sitting,
+                        const PictureEffects& effects, RenderCounts* counts) const;
+  RenderCounts Draw(const Sitting& sitting, const PictureEffects& effects, Canvas& canvas) const;
   explicit Compositor(std::unique_ptr<Scene> scene);
   std::unique_ptr<Scene> scene_;
 };

@@ -11,8 +11,9 @@
 #include "optics/media.h"
 #include "optics/trace.h"
 #include "render/color.h"
+#include "render/colour_bands.h"
 #include "render/head_scene.h"
-#include "render/ray_follower.h"
+#include "render/picture_view.h"
 
 namespace lorgnette {
 namespace {
@@ -60,10 +61,10 @@ Eigen::Vector3f PictureAt(const InputPicture& input, const Eigen::Vector2d& p) {
 
 class Surveyor {
  public:
-  Surveyor(const HeadScene& head, const RayFollower& follower, const InputPicture& input,
+  Surveyor(const HeadScene& head, const PictureView& view, const InputPicture& input,
            const Camera& camera, const Eigen::Isometry3d& camera_from_head)
       : head_(head),
-        follower_(follower),
+        view_(view),
         input_(input),
         camera_(camera),
         camera_from_head_(camera_from_head),
@@ -120,7 +121,7 @@ class Surveyor {
       const Eigen::Vector3d o = camera_from_head_ * origin;
       const Eigen::Vector3d d = camera_from_head_.linear() * direction;
       if (d.z() <= 1e-6) return std::nullopt;
-      point = o + (follower_.picture().background_depth() - o.z()) / d.z() * d;
+      point = o + (double(view_.background_depth()) - o.z()) / d.z() * d;
     }
     if (point.z() <= 1) return std::nullopt;
     return camera_.Project(point);
@@ -171,7 +172,7 @@ class Surveyor {
     }
     const Eigen::Vector2d place = at.value_or(Eigen::Vector2d(1e4, 1e4));
     survey.refraction_px = std::max(survey.refraction_px, (place - pixel).norm());
-    for (const double nm : {kBlue_nm, kRed_nm}) {
+    for (const double nm : {kChannel_nm[0], kChannel_nm[2]}) {
       const LensTrace other = TraceThrough(solid.lens(), near, IndexAt(solid.lens().medium, nm));
       if (beside_edge && other.status == RayStatus::kOk) {
         survey.dispersion_wall_px = std::max(
@@ -230,10 +231,9 @@ class Surveyor {
   // The brightest that an internal reflection at the edge can show.
   Eigen::Vector3f EdgeLight() const { return brightest_; }
 
-  static constexpr double kBlue_nm = 464.2, kRed_nm = 611.4;
   static constexpr double kOutlineJump_px = 30;
   const HeadScene& head_;
-  const RayFollower& follower_;
+  const PictureView& view_;
   const InputPicture& input_;
   const Camera& camera_;
   Eigen::Isometry3d camera_from_head_;
@@ -266,7 +266,8 @@ float LensLightShare(const HeadScene& head) {
 }
 
 // Decides one region: the smallest estimates are left out first, until their sum fills the budget.
-void Decide(std::vector<EffectDecision*> region, const EffectChoice& choice) {
+// Returns the shift that is left of the budget, pixels.
+double Decide(std::vector<EffectDecision*> region, const EffectChoice& choice) {
   std::sort(region.begin(), region.end(), [&](const EffectDecision* a, const EffectDecision* b) {
     const auto size = [&](const EffectDecision* d) {
       return std::max(d->shift_px / choice.budget.shift_px,
@@ -294,6 +295,7 @@ void Decide(std::vector<EffectDecision*> region, const EffectChoice& choice) {
                 : alone ? "above the budget"
                         : "above the budget together with what is left out";
   }
+  return std::max(0.0, choice.budget.shift_px - shift);
 }
 
 }  // namespace
@@ -337,10 +339,10 @@ Result<EffectChoice> ParseEffects(std::string_view text) {
   }
 }
 
-EffectPlan PlanEffects(const HeadScene& head, const RayFollower& follower,
-                       const InputPicture& input, const Camera& camera,
-                       const Eigen::Isometry3d& camera_from_head, const EffectChoice& choice) {
-  const Surveyor surveyor(head, follower, input, camera, camera_from_head);
+EffectPlan PlanEffects(const HeadScene& head, const PictureView& view, const InputPicture& input,
+                       const Camera& camera, const Eigen::Isometry3d& camera_from_head,
+                       const EffectChoice& choice) {
+  const Surveyor surveyor(head, view, input, camera, camera_from_head);
   EffectPlan plan;
   const double samples =
       double(head.options.samples_per_side) * double(head.options.samples_per_side);
@@ -365,18 +367,20 @@ EffectPlan PlanEffects(const HeadScene& head, const RayFollower& follower,
     const Eigen::Vector3f wall =
         s.brightest.cwiseMax(float(head.options.environment_scale) * head.environment_mean);
     add(Effect::kRefraction, s.refraction_px, float(s.refraction_wall_px) * wall, ray_ms);
-    add(Effect::kDispersion, s.dispersion_px, float(s.dispersion_wall_px) * wall, 2 * ray_ms);
+    add(Effect::kDispersion, std::max(s.dispersion_px, s.dispersion_wall_px), none, 2 * ray_ms);
     add(Effect::kFrontReflection, 0, s.front, ray_ms);
     add(Effect::kBackReflection, 0, s.back, ray_ms);
     add(Effect::kRings, 0, s.rings, edge_ms);
-    add(Effect::kBounces, 0, s.bounces, follower.follows_ghosts(lens) ? 10 * ray_ms : edge_ms);
+    add(Effect::kBounces, 0, s.bounces,
+        FollowsGhosts(head.looks[lens], head.lenses[lens].lens().medium.index_d) ? 10 * ray_ms
+                                                                                 : edge_ms);
     const bool coated = !head.looks[lens].front.bare() || !head.looks[lens].back.bare();
     add(Effect::kCoating, 0, coated ? s.coating : none, 0.05 * ray_ms);
     add(Effect::kTint, 0, head.looks[lens].tint.clear() ? none : s.tint, 0.05 * ray_ms);
     if (s.visible > 0) darkest = darkest.cwiseMin(s.darkest);
   }
   // Skin and frame. The darkest skin is not looked for: a shadow may take all there is.
-  const Eigen::Vector3f skin = follower.picture().face_brightest();
+  const Eigen::Vector3f skin = view.face_brightest();
   const bool shadows = head.options.shadow != ShadowMode::kNone;
   const auto add = [&](Effect effect, double codes, double cost_ms) {
     plan.decisions.push_back({effect, EffectRegion::kRest, 0, codes, cost_ms, true, {}});
@@ -406,7 +410,11 @@ EffectPlan PlanEffects(const HeadScene& head, const RayFollower& follower,
     for (EffectDecision& d : plan.decisions) {
       if (d.region == region) here.push_back(&d);
     }
-    Decide(here, choice);
+    const double left_px = Decide(here, choice);
+    if (region != EffectRegion::kRest &&
+        choice.wish[std::size_t(Effect::kDispersion)] == EffectWish::kEstimate) {
+      plan.effects.dispersion_from_px[int(region)] = left_px;
+    }
   }
   for (const EffectDecision& d : plan.decisions) {
     EffectSet& set = d.region == EffectRegion::kRightLens  ? plan.effects.lens[0]

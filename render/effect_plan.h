@@ -24,7 +24,7 @@
 namespace lorgnette {
 
 struct HeadScene;
-class RayFollower;
+class PictureView;
 
 struct EffectBudget {
   double shift_px = 0.25;
@@ -59,10 +59,10 @@ struct EffectPlan {
   std::vector<EffectDecision> decisions;
 };
 
-// The plan of one picture. `follower` holds the picture and the light of this frame.
-EffectPlan PlanEffects(const HeadScene& head, const RayFollower& follower,
-                       const InputPicture& input, const Camera& camera,
-                       const Eigen::Isometry3d& camera_from_head, const EffectChoice& choice);
+// The plan of one picture, which `view` shows.
+EffectPlan PlanEffects(const HeadScene& head, const PictureView& view, const InputPicture& input,
+                       const Camera& camera, const Eigen::Isometry3d& camera_from_head,
+                       const EffectChoice& choice);
 
 // A report as JSON text: an array of {effect, region, shift_px, code_values, on, reason, cost_ms}.
 std::string EffectPlanJson(const EffectPlan& plan);

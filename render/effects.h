@@ -54,6 +54,8 @@ class EffectSet {
 struct PictureEffects {
   EffectSet lens[2];  // right, left
   EffectSet rest;
+  // Dispersion of a lens is drawn where it moves a colour by more than this, in pixels.
+  double dispersion_from_px[2] = {0, 0};
   static PictureEffects Of(const EffectSet& set) { return {{set, set}, set}; }
   bool Any(Effect effect) const { return lens[0][effect] || lens[1][effect] || rest[effect]; }
 };

@@ -136,6 +136,11 @@ double MeasureBlur(const std::vector<float>& luma, int width, int height) {
   return std::sqrt(std::max(0.0, total2 - kDifference2));
 }
 
+// Standard deviation of the blur that the renderer's pictures lack, pixels.
+double AddedBlur(const CameraLook& look) {
+  return std::sqrt(std::max(0.0, look.blur_px * look.blur_px - kPixelBlur_px * kPixelBlur_px));
+}
+
 // A hash of a pixel, as a normal deviate (sum of four uniform ones).
 float Grain(std::uint32_t seed, std::uint32_t x, std::uint32_t y) {
   std::uint32_t h = seed ^ (x * 0x9E3779B1u) ^ (y * 0x85EBCA77u);
@@ -159,8 +164,10 @@ CameraLook MeasureCameraLook(const ImageRgbF& input) {
           MeasureBlur(luma, input.width, input.height)};
 }
 
+int CameraLookReach(const CameraLook& look) { return int(std::ceil(3 * AddedBlur(look))) + 1; }
+
 void ApplyCameraLook(const CameraLook& look, const std::vector<float>& coverage, std::uint32_t seed,
-                     ImageRgbF& picture) {
+                     int origin_x, int origin_y, ImageRgbF& picture) {
   LG_CHECK_EQ(coverage.size() * 3, picture.data.size());
   // Only the box around what was inserted is worked on.
   int x0 = picture.width, y0 = picture.height, x1 = -1, y1 = -1;
@@ -174,9 +181,8 @@ void ApplyCameraLook(const CameraLook& look, const std::vector<float>& coverage,
     }
   }
   if (x1 < 0) return;
-  const double extra2 = look.blur_px * look.blur_px - kPixelBlur_px * kPixelBlur_px;
-  const double sigma = extra2 > 0 ? std::sqrt(extra2) : 0;
-  const int reach = int(std::ceil(3 * sigma)) + 1;
+  const double sigma = AddedBlur(look);
+  const int reach = CameraLookReach(look);
   x0 = std::max(0, x0 - reach);
   y0 = std::max(0, y0 - reach);
   x1 = std::min(picture.width - 1, x1 + reach);
@@ -200,8 +206,9 @@ void ApplyCameraLook(const CameraLook& look, const std::vector<float>& coverage,
       if (near[i] <= 0) continue;
       // Full where half of the neighbourhood was inserted or more.
       const float mix = std::min(1.0f, 2 * near[i]);
-      const float grain = float(look.grain_codes) * std::min(1.0f, share[i]) *
-                          Grain(seed, std::uint32_t(x0 + x), std::uint32_t(y0 + y));
+      const float grain =
+          float(look.grain_codes) * std::min(1.0f, share[i]) *
+          Grain(seed, std::uint32_t(origin_x + x0 + x), std::uint32_t(origin_y + y0 + y));
       float* out = picture.at(x0 + x, y0 + y);
       for (std::size_t c = 0; c < 3; ++c) {
         const float level = colour[3 * i + c] + mix * (soft[3 * i + c] - colour[3 * i + c]);

@@ -23,7 +23,10 @@ CameraLook MeasureCameraLook(const ImageRgbF& input);
 // Softens the picture where `coverage` (one a pixel, 0..1: share of inserted surface that did not
 // come through the camera) rises or falls, and lays grain over it. The same seed gives the same
 // grain; pixels farther than three blurs from any coverage stay as they are, bit for bit.
+//   picture  a part of the picture, whose first pixel is the whole one's (x0, y0)
 void ApplyCameraLook(const CameraLook& look, const std::vector<float>& coverage, std::uint32_t seed,
-                     ImageRgbF& picture);
+                     int x0, int y0, ImageRgbF& picture);
+// How far from any coverage pixels may change.
+int CameraLookReach(const CameraLook& look);
 
 }  // namespace lorgnette

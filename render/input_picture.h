@@ -4,6 +4,7 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <algorithm>
 #include <memory>
 
 #include "base/image.h"
@@ -15,6 +16,12 @@ struct PixelBox {
   int x0 = 0, y0 = 0, x1 = 0, y1 = 0;
   bool empty() const { return x0 >= x1 || y0 >= y1; }
 };
+inline PixelBox Grown(const PixelBox& b, int by) {
+  return b.empty() ? b : PixelBox{b.x0 - by, b.y0 - by, b.x1 + by, b.y1 + by};
+}
+inline PixelBox Clipped(const PixelBox& b, int width, int height) {
+  return {std::max(b.x0, 0), std::max(b.y0, 0), std::min(b.x1, width), std::min(b.y1, height)};
+}
 
 // Refers to the image, which has to outlive it; copies share what was decoded. Thread safe.
 class InputPicture {

@@ -220,4 +220,11 @@ Eigen::Vector3f NormalReflectance(const SurfaceLook& surface, double index) {
   return Eigen::Vector3f::Constant(float(FresnelReflectance(1, 1 / index)));
 }
 
+bool FollowsGhosts(const LensLook& look, double index) {
+  constexpr float kLeastGhost = 0.01f;
+  return NormalReflectance(look.front, index)
+             .cwiseProduct(NormalReflectance(look.back, index))
+             .maxCoeff() >= kLeastGhost;
+}
+
 }  // namespace lorgnette

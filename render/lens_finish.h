@@ -101,5 +101,7 @@ LensLook LookOf(const LensFinish& finish, double index, double top_mm, double bo
 
 // Reflectance of a finish's front and back surface, from the air, at normal incidence.
 Eigen::Vector3f NormalReflectance(const SurfaceLook& surface, double index);
+// Whether a second internal reflection of a lens carries enough to be followed at every pixel.
+bool FollowsGhosts(const LensLook& look, double index);
 
 }  // namespace lorgnette

@@ -46,6 +46,10 @@ class PictureView {
 
   const Eigen::Vector3f& eye() const { return eye_; }
   Eigen::Vector2f Project(const Eigen::Vector3f& head_point) const;
+  // Camera z.
+  float Depth(const Eigen::Vector3f& head_point) const {
+    return rotation_.row(2).dot(head_point) + translation_.z();
+  }
 
   // Colour of the head where a refracted ray met it. `filled` counts what the camera never saw.
   Eigen::Vector3f Head(const SceneHit& hit, const Eigen::Vector3f& point, long& filled) const;

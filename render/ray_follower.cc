@@ -25,12 +25,6 @@ float SmoothStep(double x, double from, double to) {
   return float(s * s * (3 - 2 * s));
 }
 
-double BackgroundDepth(const CompositorOptions& options,
-                       const Eigen::Isometry3d& camera_from_head) {
-  return options.background_depth_mm.value_or(camera_from_head.translation().z() +
-                                              options.background_distance_mm);
-}
-
 // Whether the pictures of the two lenses touch, with room for what refraction adds.
 bool LensesOverlap(const HeadScene& head, const Camera& camera,
                    const Eigen::Isometry3d& camera_from_head) {
@@ -54,18 +48,21 @@ bool LensesOverlap(const HeadScene& head, const Camera& camera,
 
 }  // namespace
 
-RayFollower::RayFollower(const HeadScene& head, const InputPicture& input, const Camera& camera,
-                         const Eigen::Isometry3d& camera_from_head, const PictureEffects& effects,
-                         std::optional<double> wavelength_nm)
+RayFollower::RayFollower(const HeadScene& head, const PictureView& picture, const Camera& camera,
+                         const Eigen::Isometry3d& camera_from_head, const PictureEffects& effects)
     : head_(head),
       effects_(effects),
       world_from_head_(
           (head.options.world_from_camera * camera_from_head.rotation()).cast<float>()),
-      picture_(input, camera, camera_from_head, head.scene, head.face_vertices, head.face_normals,
-               head.face_triangles, BackgroundDepth(head.options, camera_from_head)) {
+      picture_(picture) {
+  if (effects.Any(Effect::kDispersion)) bands_ = ColourBands(head.options.wavelengths);
+  index_.resize(1 + bands_.size());
   for (std::size_t i = 0; i < head.lenses.size(); ++i) {
     const Medium& medium = head.lenses[i].lens().medium;
-    index_.push_back(wavelength_nm ? IndexAt(medium, *wavelength_nm) : medium.index_d);
+    index_[0].push_back(medium.index_d);
+    for (std::size_t k = 0; k < bands_.size(); ++k) {
+      index_[k + 1].push_back(IndexAt(medium, bands_[k].nm));
+    }
     looks_.push_back(head.looks[i]);
     if (!effects.lens[i][Effect::kCoating]) looks_.back().front = looks_.back().back = {};
     if (!effects.lens[i][Effect::kTint]) looks_.back().tint = {};
@@ -230,9 +227,7 @@ Eigen::Vector3f RayFollower::Miss(const Eigen::Vector3f& origin, const Eigen::Ve
 }
 
 bool RayFollower::follows_ghosts(std::size_t lens) const {
-  return NormalReflectance(looks_[lens].front, index_[lens])
-             .cwiseProduct(NormalReflectance(looks_[lens].back, index_[lens]))
-             .maxCoeff() >= kLeastGhost;
+  return FollowsGhosts(looks_[lens], index_[0][lens]);
 }
 
 std::optional<RayFollower::Entry> RayFollower::FirstGlass(const Ray& ray) const {
@@ -294,7 +289,8 @@ Eigen::Vector3f RayFollower::EnterGlass(std::size_t lens, const Ray& ray, const 
   const LensSolid& solid = head_.lenses[lens];
   const EffectSet& on = effects_.lens[lens];
   const double cosine = std::min(-hit.normal.dot(ray.direction), 1.0);
-  Split split = AtSurface(lens, hit.face, FresnelReflectance(cosine, 1 / index_[lens]), cosine,
+  const double index = index_[pixel.band][lens];
+  Split split = AtSurface(lens, hit.face, FresnelReflectance(cosine, 1 / index), cosine,
                           /*from_glass=*/false);
   const double reflected = weight * double(split.reflected.maxCoeff());
   Eigen::Vector3f colour = Eigen::Vector3f::Zero();
@@ -307,7 +303,7 @@ Eigen::Vector3f RayFollower::EnterGlass(std::size_t lens, const Ray& ray, const 
   }
   Eigen::Vector3d direction = ray.direction;
   if (on[Effect::kRefraction]) {
-    direction = Refract(ray.direction, hit.normal, 1 / index_[lens])->normalized();
+    direction = Refract(ray.direction, hit.normal, 1 / index)->normalized();
   }
   return colour + split.passed.cwiseProduct(Inside(lens, {hit.point, direction},
                                                    weight * double(split.passed.maxCoeff()),
@@ -340,7 +336,7 @@ Eigen::Vector3f RayFollower::Inside(std::size_t lens, const Ray& ray, double wei
   if (hit->face == SolidFace::kWall && head_.options.finish.edge == EdgeFinish::kGround) {
     return tint.cwiseProduct(GroundEdge());
   }
-  const double index = index_[lens];
+  const double index = index_[pixel.band][lens];
   const double cosine = std::min(hit->normal.dot(ray.direction), 1.0);
   std::optional<Eigen::Vector3d> out = ray.direction;
   double reflectance, cosine_in_air = cosine;

@@ -7,6 +7,7 @@
 #include <optional>
 #include <vector>
 
+#include "render/colour_bands.h"
 #include "render/effects.h"
 #include "render/gathered_shadow.h"
 #include "render/head_scene.h"
@@ -16,6 +17,7 @@ namespace lorgnette {
 
 // What one pixel's rays share.
 struct PixelState {
+  std::uint8_t band = 0;   // 0: the light has the media's own index (d line); k: ColourBands()[k-1]
   std::uint32_t seed = 0;  // of the paper's strata
   long filled = 0;
   // Paper mode shades one point a pixel; nullopt until a ray of the pixel met the face.
@@ -26,19 +28,20 @@ struct PixelState {
 
 class RayFollower {
  public:
-  //   wavelength_nm  whose index the glass has; nullopt: the medium's own (d line)
-  RayFollower(const HeadScene& head, const InputPicture& input, const Camera& camera,
-              const Eigen::Isometry3d& camera_from_head, const PictureEffects& effects,
-              std::optional<double> wavelength_nm = std::nullopt);
+  // `picture` and `head` have to outlive it.
+  RayFollower(const HeadScene& head, const PictureView& picture, const Camera& camera,
+              const Eigen::Isometry3d& camera_from_head, const PictureEffects& effects);
 
   const PictureView& picture() const { return picture_; }
   const EffectSet& effects(std::size_t lens) const { return effects_.lens[lens]; }
-  double index(std::size_t lens) const { return index_[lens]; }
+  double index(std::size_t lens, std::size_t band = 0) const { return index_[band][lens]; }
+  const std::vector<ColourBand>& bands() const { return bands_; }
+  // Dispersion of the lens is drawn where it moves a colour by more than this, in pixels.
+  double dispersion_from_px(std::size_t lens) const { return effects_.dispersion_from_px[lens]; }
   // Coats and tint of a lens as they are drawn.
   const LensLook& look(std::size_t lens) const { return looks_[lens]; }
 
   // Whether a second internal reflection of this lens carries enough to be followed at every pixel.
-  static constexpr float kLeastGhost = 0.01f;
   bool follows_ghosts(std::size_t lens) const;
 
   // First glass on a ray of head space that starts outside.
@@ -113,12 +116,13 @@ class RayFollower {
 
   const HeadScene& head_;
   PictureEffects effects_;
-  std::vector<double> index_;    // one a lens
-  std::vector<LensLook> looks_;  // one a lens
+  std::vector<ColourBand> bands_;
+  std::vector<std::vector<double>> index_;  // by PixelState::band, then one a lens
+  std::vector<LensLook> looks_;             // one a lens
   Eigen::Matrix3f world_from_head_;
   Eigen::Vector4f frame_z_{0, 0, 0, 0};  // of a point in head space (x, y, z, 1)
   bool lenses_overlap_ = false;
-  PictureView picture_;
+  const PictureView& picture_;
   std::vector<Eigen::Vector3f> ratios_;            // one a baked point
   std::vector<Eigen::Vector3f> frame_irradiance_;  // one a vertex
   std::optional<GatheredShadow> gathered_;

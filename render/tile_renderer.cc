@@ -117,7 +117,8 @@ Eigen::Vector3f Mirrored(const Eigen::Vector3f& d, const Eigen::Vector3f& normal
 // A ray through both surfaces away from the edge wall.
 struct TileRenderer::Regular {
   std::uint32_t sample;
-  bool near_rim;  // its way inside may meet the frame
+  std::uint32_t ray;  // index into Batch::in
+  bool near_rim;      // its way inside may meet the frame
   // Shares of the pixel: mirrored by the first surface; gone through both; mirrored by the second.
   Eigen::Vector3f enter, through, back;
   Eigen::Vector3f entered;  // has passed the first surface
@@ -150,6 +151,11 @@ struct TileRenderer::Batch {
   Bundle rim, main, front_reflection, back_reflection;
   std::vector<std::uint32_t> main_of, front_of, back_of;
   std::vector<Eigen::Vector3f> back_weight;
+  // Dispersion.
+  std::vector<std::uint32_t> parted;  // indices into main
+  RayColumns colour_in, colour_exit;
+  std::vector<std::uint8_t> colour_status;
+  Bundle colour;
 };
 
 TileRenderer::TileRenderer(const HeadScene& head, const RayFollower& follower, const Camera& camera,
@@ -220,8 +226,91 @@ void TileRenderer::TraceExactly(std::size_t i, const Batch& batch,
   }
   sample.kind = CameraSample::Kind::kLensElsewhere;
   sample.direct.setZero();
-  sample.inserted =
-      follower_.EnterGlass(glass->lens, glass->ray, glass->hit, 1, 0, pixels[sample.pixel]);
+  PixelState& pixel = pixels[sample.pixel];
+  const auto colour = [&] {
+    return follower_.EnterGlass(glass->lens, glass->ray, glass->hit, 1, 0, pixel);
+  };
+  if (!PartsColours(glass->lens)) {
+    sample.inserted = colour();
+    return;
+  }
+  const std::vector<ColourBand>& bands = follower_.bands();
+  for (std::size_t k = 0; k < bands.size(); ++k) {
+    pixel.band = std::uint8_t(k + 1);
+    sample.inserted[bands[k].channel] += colour()[bands[k].channel] * 3 / float(bands.size());
+  }
+  pixel.band = 0;
+}
+
+bool TileRenderer::PartsColours(std::size_t lens) const {
+  const EffectSet& on = follower_.effects(lens);
+  return on[Effect::kDispersion] && on[Effect::kRefraction];
+}
+
+float TileRenderer::Parting(std::size_t lens, const Batch& batch, std::size_t main) const {
+  // Colours part in proportion to the bend, as in a thin prism; more where rays graze.
+  constexpr float kMargin = 1.5f;
+  const Regular& r = batch.regular[batch.main_of[main]];
+  const double index = follower_.index(lens);
+  double spread = 0;
+  for (std::size_t k = 1; k <= follower_.bands().size(); ++k) {
+    spread = std::max(spread, std::abs(follower_.index(lens, k) - index) / (index - 1));
+  }
+  const float bend = (r.exit - batch.in.vector(r.ray)).norm();
+  const Eigen::Vector3f& origin = batch.main.origins[main];
+  const Eigen::Vector3f& direction = batch.main.directions[main];
+  const PictureView& picture = follower_.picture();
+  const float from = picture.Depth(origin);
+  const float slope = picture.Depth(origin + direction) - from;
+  float way = batch.main.hits[main].distance;
+  if (!batch.main.hits[main].hit()) {
+    if (slope <= 1e-6f) return kInfinity;
+    way = (picture.background_depth() - from) / slope;
+  }
+  const float depth = from + way * slope;
+  if (depth <= 1) return kInfinity;
+  return kMargin * float(spread) * bend * (way + (r.second_point - r.first_point).norm()) *
+         float(camera_.fx) / depth;
+}
+
+void TileRenderer::TraceColours(std::size_t lens, Batch& batch, std::vector<CameraSample>& samples,
+                                std::vector<PixelState>& pixels) const {
+  const LensSolid& solid = head_.lenses[lens];
+  const Eigen::Isometry3f head_from_lens = solid.head_from_lens().cast<float>();
+  const std::vector<ColourBand>& bands = follower_.bands();
+  const float share = 3 / float(bands.size());
+  const std::size_t n = batch.parted.size();
+  batch.colour_in.Resize(n);
+  batch.colour_exit.Resize(n);
+  batch.colour_status.resize(n);
+  for (std::size_t j = 0; j < n; ++j) {
+    const std::uint32_t ray = batch.regular[batch.main_of[batch.parted[j]]].ray;
+    batch.colour_in.Set(j, batch.in.point(ray), batch.in.vector(ray));
+  }
+  for (std::size_t k = 0; k < bands.size(); ++k) {
+    TraceLensBatch(solid.lens(), follower_.index(lens, k + 1), batch.colour_in.const_view(), n,
+                   {batch.colour_exit.view(), batch.colour_status.data()});
+    batch.colour.Clear();
+    for (std::size_t j = 0; j < n; ++j) {
+      const std::size_t main = batch.parted[j];
+      if (batch.colour_status[j] == std::uint8_t(RayStatus::kOk)) {
+        batch.colour.Add(head_from_lens * batch.colour_exit.point(j),
+                         head_from_lens.linear() * batch.colour_exit.vector(j));
+      } else {
+        batch.colour.Add(batch.main.origins[main], batch.main.directions[main]);
+      }
+    }
+    batch.colour.Trace(head_.scene, RaySet::kAll);
+    const int c = bands[k].channel;
+    for (std::size_t j = 0; j < n; ++j) {
+      const Regular& r = batch.regular[batch.main_of[batch.parted[j]]];
+      CameraSample& sample = samples[r.sample];
+      const Eigen::Vector3f colour =
+          follower_.AtHit(batch.colour.hits[j], batch.colour.origins[j], batch.colour.directions[j],
+                          /*transmitted=*/true, pixels[sample.pixel]);
+      sample.inserted[c] += share * r.through[c] * colour[c];
+    }
+  }
 }
 
 // How the light of a ray through both surfaces is shared out. `reflectance` is that of bare glass.
@@ -324,6 +413,7 @@ void TileRenderer::TraceLens(std::size_t lens, Batch& batch, std::vector<CameraS
     batch.lens_of[i] = std::uint8_t(lens + 1);
     Regular r;
     r.sample = i;
+    r.ray = std::uint32_t(k);
     r.near_rim = at1.clearance < rim || at2.clearance < rim;
     r.first_point = p1;
     r.first_normal = batch.first.vector(k);
@@ -453,6 +543,12 @@ void TileRenderer::TraceLens(std::size_t lens, Batch& batch, std::vector<CameraS
         weight =
             weight.cwiseProduct(look.tint.Between(r.second_point.cast<double>(), p.cast<double>()));
       }
+      if (look.front.bare()) {
+        // What the front sends back once more ends near where the transmitted ray does.
+        const Eigen::Vector3f again = batch.back_reflectance[j] * weight;
+        batch.regular[k].through += again;
+        weight -= again;
+      }
       batch.back_of[kept++] = k;
       batch.back_weight.push_back(weight);
       batch.back_reflection.Add(to_head(p), head_from_lens * batch.back_out.vector(j));
@@ -471,6 +567,8 @@ void TileRenderer::TraceLens(std::size_t lens, Batch& batch, std::vector<CameraS
                                             transmitted, pixels[sample.pixel]));
   };
   const bool other_lens_near = head_.lenses.size() > 1 && follower_.lenses_overlap();
+  const bool colours = PartsColours(lens);
+  batch.parted.clear();
   for (std::size_t j = 0; j < batch.main_of.size(); ++j) {
     const std::uint32_t k = batch.main_of[j];
     const Regular& r = batch.regular[k];
@@ -487,8 +585,13 @@ void TileRenderer::TraceLens(std::size_t lens, Batch& batch, std::vector<CameraS
         continue;
       }
     }
+    if (colours && double(Parting(lens, batch, j)) > follower_.dispersion_from_px(lens)) {
+      batch.parted.push_back(std::uint32_t(j));
+      continue;
+    }
     add(k, batch.main, j, r.through, true);
   }
+  if (!batch.parted.empty()) TraceColours(lens, batch, samples, pixels);
   for (std::size_t j = 0; j < batch.front_of.size(); ++j) {
     add(batch.front_of[j], batch.front_reflection, j, batch.regular[batch.front_of[j]].enter,
         false);

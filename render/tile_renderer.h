@@ -42,6 +42,13 @@ class TileRenderer {
   void TracePrimary(RaySet set, Batch& batch, std::vector<CameraSample>& samples) const;
   void TraceLens(std::size_t lens, Batch& batch, std::vector<CameraSample>& samples,
                  std::vector<PixelState>& pixels) const;
+  // The main rays whose colours part (batch.parted): each wavelength its own way. What is mirrored
+  // keeps the d line's way.
+  void TraceColours(std::size_t lens, Batch& batch, std::vector<CameraSample>& samples,
+                    std::vector<PixelState>& pixels) const;
+  bool PartsColours(std::size_t lens) const;
+  // How far apart the ends of a main ray's colours may lie, pixels.
+  float Parting(std::size_t lens, const Batch& batch, std::size_t main) const;
   void TraceExactly(std::size_t sample, const Batch& batch, std::vector<CameraSample>& samples,
                     std::vector<PixelState>& pixels) const;
   void Direct(std::size_t sample, const Batch& batch, std::vector<CameraSample>& samples,

@@ -189,7 +189,7 @@ std::map<Effect, Scene> ScenesThatNeed() {
   s = {};
   s.lens = {7, 0, 0, 1.6, 48, 36, 25};
   s.edges = true;
-  s.focal_px = 1200;
+  s.focal_px = 2400;
   s.x_mm = -48;
   scenes[Effect::kDispersion] = s;
 
@@ -230,7 +230,8 @@ TEST(EffectPlan, KeepsTheEffectThatASceneNeeds) {
   for (const auto& [effect, scene] : ScenesThatNeed()) {
     const Drawn drawn = Draw(scene);
     const EffectBudget budget;
-    EXPECT_TRUE(drawn.Plan("auto").effects.Any(effect)) << EffectName(effect);
+    const EffectPlan plan = drawn.Plan("auto");
+    EXPECT_TRUE(plan.effects.Any(effect)) << EffectName(effect) << EffectPlanJson(plan);
     EffectSet without = EffectSet::All();
     without.Set(effect, false);
     const double beyond = Beyond(drawn.With(PictureEffects::Of(without)),

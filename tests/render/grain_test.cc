@@ -55,8 +55,8 @@ TEST(CameraLook, GivesInsertedPixelsTheSameGrainEachTimeAndLeavesTheRestAlone) {
   }
   const CameraLook look{4, 1};
   ImageRgbF once = picture, again = picture;
-  ApplyCameraLook(look, coverage, 7, once);
-  ApplyCameraLook(look, coverage, 7, again);
+  ApplyCameraLook(look, coverage, 7, 0, 0, once);
+  ApplyCameraLook(look, coverage, 7, 0, 0, again);
   EXPECT_EQ(once.data, again.data);
   double sum = 0, squares = 0;
   int count = 0;
