@@ -19,7 +19,7 @@ namespace {
 struct TryonCommandOptions {
   TryonRequest request;
   std::string frames;
-  std::string quality, shadow;  // empty: the compositor's defaults
+  std::string quality = "standard", shadow;  // shadow empty: as the quality says
   std::optional<int> samples;
   bool adaptive = false;
   bool no_refraction = false, no_reflection = false, no_shadow = false;
@@ -133,6 +133,7 @@ void AddTryonCommand(CLI::App& program, CommandContext& context) {
   command
       .add_option("--quality", options->quality,
                   "Samples, directions of light and bounces by name; options below go before it")
+      ->capture_default_str()
       ->check(CLI::IsMember(presets));
   command
       .add_option("--shadow", options->shadow,
@@ -145,9 +146,10 @@ void AddTryonCommand(CLI::App& program, CommandContext& context) {
   command.add_option("--index", options->index, "Refractive index, for the material's");
   command.add_option("--pd", request.pd_mm,
                      "Distance between the pupils, mm, for the prescription's");
-  command.add_option("--samples", options->samples, "Samples a pixel along each side (2)");
+  command.add_option("--samples", options->samples,
+                     "Samples a pixel along each side, at every pixel");
   command.add_flag("--adaptive", options->adaptive,
-                   "All samples only where the picture needs them: faster, no visible difference");
+                   "With --samples: all of them only where the picture needs them, one elsewhere");
   command
       .add_option("--nudge", options->nudge,
                   "Move the glasses after the fit: X,Y,Z in mm (wearer's left, up, forward), "

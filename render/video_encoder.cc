@@ -106,7 +106,7 @@ Status VideoEncoder::OpenCodec() {
   if ((output_->oformat->flags & AVFMT_GLOBALHEADER) != 0) {
     codec_->flags |= AV_CODEC_FLAG_GLOBAL_HEADER;
   }
-  av_opt_set(codec_->priv_data, "preset", "faster", 0);
+  av_opt_set(codec_->priv_data, "preset", "veryfast", 0);
   av_opt_set_double(codec_->priv_data, "crf", options_.crf, 0);
   if (const int opened = avcodec_open2(codec_.get(), encoder, nullptr); opened < 0) {
     return Failure(path + ": cannot be encoded: " + av::Reason(opened));
