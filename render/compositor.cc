@@ -45,7 +45,8 @@ struct PixelSum {
 
   void Add(const CameraSample& s, float share) {
     using Kind = CameraSample::Kind;
-    const bool through = s.kind == Kind::kLensToHead || s.kind == Kind::kLensElsewhere;
+    const bool through = s.kind == Kind::kLensToHead || s.kind == Kind::kLensToBackground ||
+                         s.kind == Kind::kLensElsewhere;
     lens |= through;
     frame |= s.kind == Kind::kFrame;
     if (s.kind == Kind::kFrame) frame_share += share * (1 - s.direct.maxCoeff());

@@ -84,11 +84,13 @@ Result<EmbreeScene> EmbreeScene::Build(const TriangleMesh& face, const TriangleM
   }
   const auto attach = [&](RaySet set, std::initializer_list<SceneObject> objects) {
     RTCScene scene = rtcNewScene(state->device);
-    // A scene that moves keeps a tree for each mesh: the face's is refitted, the others stay.
+    // A scene that moves keeps a tree for each mesh: the face's is refitted, the others stay. Only
+    // the lowest quality of the scene does so (measured: 0.1 ms a commit in place of 29); that of
+    // the meshes' own trees is theirs.
     const bool moves = set != RaySet::kFrame;
     rtcSetSceneFlags(
         scene, moves ? RTC_SCENE_FLAG_ROBUST | RTC_SCENE_FLAG_DYNAMIC : RTC_SCENE_FLAG_ROBUST);
-    rtcSetSceneBuildQuality(scene, RTC_BUILD_QUALITY_MEDIUM);
+    rtcSetSceneBuildQuality(scene, moves ? RTC_BUILD_QUALITY_LOW : RTC_BUILD_QUALITY_MEDIUM);
     for (const SceneObject object : objects) {
       if (RTCGeometry geometry = state->geometries[std::size_t(object)]) {
         rtcAttachGeometryByID(scene, geometry, unsigned(object));

@@ -575,7 +575,8 @@ void TileRenderer::TraceLens(std::size_t lens, Batch& batch, std::vector<CameraS
     CameraSample& sample = samples[r.sample];
     const SceneHit& hit = batch.main.hits[j];
     sample.kind = hit.object == SceneObject::kFace ? CameraSample::Kind::kLensToHead
-                                                   : CameraSample::Kind::kLensElsewhere;
+                  : hit.hit()                      ? CameraSample::Kind::kLensElsewhere
+                                                   : CameraSample::Kind::kLensToBackground;
     if (other_lens_near) {
       const Ray leaving{batch.main.origins[j].cast<double>(),
                         batch.main.directions[j].cast<double>().normalized()};
