@@ -23,11 +23,15 @@ body { font: 16px/1.45 system-ui, sans-serif; color: var(--ink); background: var
 h1 { font-size: 1.5rem; } h2 { font-size: 1.1rem; margin: 2rem 0 .25rem; }
 p { margin: .25rem 0 .5rem; } .source, .quiet { color: var(--quiet); }
 .wide { overflow-x: auto; }
-table { border-collapse: collapse; width: 100%; font-variant-numeric: tabular-nums; }
+table { border-collapse: collapse; width: 100%; min-width: 38rem; font-variant-numeric: tabular-nums; }
 th, td { text-align: left; padding: .25rem .6rem .25rem 0; border-bottom: 1px solid var(--line); }
 td.number, th.number { text-align: right; white-space: nowrap; }
+td.name { min-width: 19rem; }
 tr.front td { font-weight: 650; }
 .pass { color: var(--good); } .fail { color: var(--bad); font-weight: 700; }
+.summary table { min-width: 0; }
+@media (max-width: 40rem) { .summary .group { display: none; } }
+.bars { width: calc(100% - 3.9rem); margin: 0 .7rem 0 3.2rem; overflow: visible; }
 svg text { fill: var(--ink); font: 11px system-ui, sans-serif; }
 svg a:hover rect { opacity: .75; }
 a { color: inherit; }

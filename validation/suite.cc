@@ -28,15 +28,14 @@ const char* Name(Certainty certainty) {
   return "";
 }
 
-// Digits of a case for a table: its least, or the margin below the bound when it has only bounds.
-std::string Digits(const CaseRun& run) {
+}  // namespace
+
+std::string DigitsText(const CaseRun& run) {
   for (const Check& check : run.checks()) {
     if (check.certainty != Certainty::kBound) return fmt::format("{:4.1f}", run.least_digits());
   }
   return "   -";
 }
-
-}  // namespace
 
 Result<SuiteResult> RunSuite(const std::string& id, const std::string& group, bool slow) {
   SuiteResult result;
@@ -73,7 +72,7 @@ std::string TextTable(const SuiteResult& result) {
       fmt::format("{:<5} {:<14} {:>6} {:<5} {}\n", "case", "group", "digits", "", "title");
   for (const CaseResult& one : result.cases) {
     text += fmt::format("{:<5} {:<14} {:>6} {:<5} {}\n", one.definition->id, one.definition->group,
-                        Digits(one.run), Verdict(one.run), one.definition->title);
+                        DigitsText(one.run), Verdict(one.run), one.definition->title);
     if (!one.run.skipped().empty()) text += fmt::format("      {}\n", one.run.skipped());
     for (const Check& check : one.run.checks()) {
       if (check.passed()) continue;

@@ -26,11 +26,14 @@ struct SuiteResult {
 //   slow  also those that take seconds; a case that is named by its id always runs
 Result<SuiteResult> RunSuite(const std::string& id, const std::string& group, bool slow = false);
 
+// The least matching digits of a case, or "-" when it has only bounds.
+std::string DigitsText(const CaseRun& run);
 // One line a case: number, group, matching digits, verdict, title; failed checks below their case.
 std::string TextTable(const SuiteResult& result);
 // Everything, for machines (docs/validation.md has the keys).
 std::string JsonReport(const SuiteResult& result);
-// One page that needs no network: a plot of matching digits, a table a case, light and dark.
+// One page that needs no network: a summary, plots of digits and margins, a table a case; light and
+// dark.
 std::string HtmlReport(const SuiteResult& result);
 
 }  // namespace lorgnette::validation
