@@ -9,6 +9,7 @@
 #include <utility>
 
 #include "base/check.h"
+#include "render/embree_shape.h"
 
 namespace lorgnette {
 namespace {
@@ -39,6 +40,25 @@ RTCIntersectContext Context(RTCIntersectContextFlags flags) {
   rtcInitIntersectContext(&context);
   context.flags = flags;
   return context;
+}
+
+// A packet as Embree has it, before a trace.
+RTCRayHit16 QueryOf(const RayPacket& p) {
+  RTCRayHit16 q;
+  std::memcpy(q.ray.org_x, p.ox, sizeof p.ox);
+  std::memcpy(q.ray.org_y, p.oy, sizeof p.oy);
+  std::memcpy(q.ray.org_z, p.oz, sizeof p.oz);
+  std::memcpy(q.ray.tnear, p.near, sizeof p.near);
+  std::memcpy(q.ray.dir_x, p.dx, sizeof p.dx);
+  std::memcpy(q.ray.dir_y, p.dy, sizeof p.dy);
+  std::memcpy(q.ray.dir_z, p.dz, sizeof p.dz);
+  std::memcpy(q.ray.tfar, p.far, sizeof p.far);
+  std::memset(q.ray.time, 0, sizeof q.ray.time);
+  std::memset(q.ray.mask, 0xff, sizeof q.ray.mask);
+  std::memset(q.ray.flags, 0, sizeof q.ray.flags);
+  std::memset(q.hit.geomID, 0xff, sizeof q.hit.geomID);
+  std::memset(q.hit.instID, 0xff, sizeof q.hit.instID);
+  return q;
 }
 
 }  // namespace
@@ -150,20 +170,7 @@ bool EmbreeScene::Occluded(RaySet set, const Eigen::Vector3f& origin,
 
 void EmbreeScene::Intersect16(RaySet set, RayPacket& p) const {
   RTCIntersectContext context = Context(RTC_INTERSECT_CONTEXT_FLAG_COHERENT);
-  RTCRayHit16 q;
-  std::memcpy(q.ray.org_x, p.ox, sizeof p.ox);
-  std::memcpy(q.ray.org_y, p.oy, sizeof p.oy);
-  std::memcpy(q.ray.org_z, p.oz, sizeof p.oz);
-  std::memcpy(q.ray.tnear, p.near, sizeof p.near);
-  std::memcpy(q.ray.dir_x, p.dx, sizeof p.dx);
-  std::memcpy(q.ray.dir_y, p.dy, sizeof p.dy);
-  std::memcpy(q.ray.dir_z, p.dz, sizeof p.dz);
-  std::memcpy(q.ray.tfar, p.far, sizeof p.far);
-  std::memset(q.ray.time, 0, sizeof q.ray.time);
-  std::memset(q.ray.mask, 0xff, sizeof q.ray.mask);
-  std::memset(q.ray.flags, 0, sizeof q.ray.flags);
-  std::memset(q.hit.geomID, 0xff, sizeof q.hit.geomID);
-  std::memset(q.hit.instID, 0xff, sizeof q.hit.instID);
+  RTCRayHit16 q = QueryOf(p);
   alignas(64) std::int32_t mask[RayPacket::kSize];
   for (int i = 0; i < RayPacket::kSize; ++i) mask[i] = p.valid[i] ? -1 : 0;
   rtcIntersect16(mask, state_->scene(set), &context, &q);
@@ -193,6 +200,91 @@ void EmbreeScene::Occluded16(RaySet set, RayPacket& p) const {
   for (int i = 0; i < RayPacket::kSize; ++i) mask[i] = p.valid[i] ? -1 : 0;
   rtcOccluded16(mask, state_->scene(set), &context, &q);
   std::memcpy(p.far, q.tfar, sizeof p.far);
+}
+
+struct EmbreeShape::State {
+  Meet meet;
+  Eigen::AlignedBox3f box;
+  RTCDevice device = nullptr;
+  RTCScene scene = nullptr;
+
+  State(Meet m, const Eigen::AlignedBox3f& b) : meet(std::move(m)), box(b) {}
+  State(const State&) = delete;
+  State& operator=(const State&) = delete;
+  ~State() {
+    if (scene) rtcReleaseScene(scene);
+    if (device) rtcReleaseDevice(device);
+  }
+
+  static void Bounds(const RTCBoundsFunctionArguments* a) {
+    const Eigen::AlignedBox3f& box = static_cast<const State*>(a->geometryUserPtr)->box;
+    *a->bounds_o = {box.min().x(), box.min().y(), box.min().z(), 0,
+                    box.max().x(), box.max().y(), box.max().z(), 0};
+  }
+
+  static void Intersect(const RTCIntersectFunctionNArguments* a) {
+    const State* self = static_cast<const State*>(a->geometryUserPtr);
+    RTCRayN* rays = RTCRayHitN_RayN(a->rayhit, a->N);
+    RTCHitN* hits = RTCRayHitN_HitN(a->rayhit, a->N);
+    for (unsigned i = 0; i < a->N; ++i) {
+      if (a->valid[i] != -1) continue;
+      const auto hit = self->meet({RTCRayN_org_x(rays, a->N, i), RTCRayN_org_y(rays, a->N, i),
+                                   RTCRayN_org_z(rays, a->N, i)},
+                                  {RTCRayN_dir_x(rays, a->N, i), RTCRayN_dir_y(rays, a->N, i),
+                                   RTCRayN_dir_z(rays, a->N, i)});
+      if (!hit || hit->distance <= RTCRayN_tnear(rays, a->N, i) ||
+          hit->distance >= RTCRayN_tfar(rays, a->N, i)) {
+        continue;
+      }
+      RTCRayN_tfar(rays, a->N, i) = hit->distance;
+      RTCHitN_Ng_x(hits, a->N, i) = hit->normal.x();
+      RTCHitN_Ng_y(hits, a->N, i) = hit->normal.y();
+      RTCHitN_Ng_z(hits, a->N, i) = hit->normal.z();
+      RTCHitN_primID(hits, a->N, i) = a->primID;
+      RTCHitN_geomID(hits, a->N, i) = unsigned(SceneObject::kFace);
+    }
+  }
+};
+
+EmbreeShape::EmbreeShape(std::unique_ptr<State> state) : state_(std::move(state)) {}
+EmbreeShape::EmbreeShape(EmbreeShape&&) noexcept = default;
+EmbreeShape& EmbreeShape::operator=(EmbreeShape&&) noexcept = default;
+EmbreeShape::~EmbreeShape() = default;
+
+Result<EmbreeShape> EmbreeShape::Build(const Eigen::AlignedBox3f& box, Meet meet) {
+  auto state = std::make_unique<State>(std::move(meet), box);
+  state->device = rtcNewDevice(nullptr);
+  if (state->device == nullptr) {
+    return Failure(
+        fmt::format("Embree cannot be initialised (error {})", int(rtcGetDeviceError(nullptr))));
+  }
+  state->scene = rtcNewScene(state->device);
+  RTCGeometry geometry = rtcNewGeometry(state->device, RTC_GEOMETRY_TYPE_USER);
+  rtcSetGeometryUserPrimitiveCount(geometry, 1);
+  rtcSetGeometryUserData(geometry, state.get());
+  rtcSetGeometryBoundsFunction(geometry, State::Bounds, nullptr);
+  rtcSetGeometryIntersectFunction(geometry, State::Intersect);
+  rtcCommitGeometry(geometry);
+  rtcAttachGeometryByID(state->scene, geometry, unsigned(SceneObject::kFace));
+  rtcReleaseGeometry(geometry);
+  rtcCommitScene(state->scene);
+  if (const RTCError error = rtcGetDeviceError(state->device); error != RTC_ERROR_NONE) {
+    return Failure(fmt::format("Embree cannot build a shape (error {})", int(error)));
+  }
+  return EmbreeShape(std::move(state));
+}
+
+void EmbreeShape::Intersect16(RayPacket& p, Normals& normals) const {
+  RTCIntersectContext context = Context(RTC_INTERSECT_CONTEXT_FLAG_COHERENT);
+  RTCRayHit16 q = QueryOf(p);
+  alignas(64) std::int32_t mask[RayPacket::kSize];
+  for (int i = 0; i < RayPacket::kSize; ++i) mask[i] = p.valid[i] ? -1 : 0;
+  rtcIntersect16(mask, state_->scene, &context, &q);
+  std::memcpy(p.far, q.ray.tfar, sizeof p.far);
+  std::memcpy(p.object, q.hit.geomID, sizeof p.object);
+  for (std::size_t i = 0; i < normals.size(); ++i) {
+    normals[i] = {q.hit.Ng_x[i], q.hit.Ng_y[i], q.hit.Ng_z[i]};
+  }
 }
 
 }  // namespace lorgnette

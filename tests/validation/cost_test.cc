@@ -81,6 +81,9 @@ TEST(Budget, RecommendsTheFastestWithinAnErrorAndTheBestWithinATime) {
   EXPECT_EQ(Recommend(study, *ParseBudget("0.02px", "3ms")), nullptr);
   EXPECT_EQ(Recommend(study, *ParseBudget("1 ratio", "")), nullptr);
   EXPECT_EQ(Recommend(study, *ParseBudget("0.2D", ""))->time, 50);
+  // An error that the study does not know leaves the time to decide.
+  EXPECT_EQ(Recommend(study, *ParseBudget("1 ratio", "3ms"))->time, 20);
+  EXPECT_FALSE(Applies(study, *ParseBudget("1 ratio", "")));
 }
 
 TEST(Budget, NamesWhatItCannotRead) {
@@ -119,6 +122,7 @@ TEST(LensStudy, RanksTheMethodsAsTheirPhysicsDoes) {
   EXPECT_NEAR(error("displacement map", "every 4") / error("displacement map", "every 2"), 4, 1);
   // Single precision of a point 500 mm away and of a direction, in pixels of 0.8 a mm.
   EXPECT_LT(error("analytic surfaces", "float"), 1e-4);
+  EXPECT_LT(error("Embree user geometry", "float"), 1e-4);
   EXPECT_LT(error("analytic surfaces", "double, SIMD"), kRoundingError);
   EXPECT_LT(error("analytic surfaces", "double, one"), kRoundingError);
 }

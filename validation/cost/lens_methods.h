@@ -26,7 +26,8 @@ std::vector<LensMethod> MapMethods(const Lens& lens, const CameraRays& rays);
 // The analytic surfaces: SIMD kernel in float and double, one ray at a time, with dispersion.
 std::vector<LensMethod> AnalyticMethods(const Lens& lens, const CameraRays& rays);
 // Meshes of 1 k to 1 M triangles in Embree, with the normals of their facets and with interpolated
-// ones. `most` leaves out meshes of more triangles.
+// ones, and the surfaces themselves as Embree's user geometry. `most` leaves out meshes of more
+// triangles.
 Result<std::vector<LensMethod>> MeshMethods(const Lens& lens, const CameraRays& rays, int most);
 
 }  // namespace lorgnette::validation

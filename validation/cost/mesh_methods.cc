@@ -7,6 +7,7 @@
 
 #include "optics/trace.h"
 #include "render/embree_scene.h"
+#include "render/embree_shape.h"
 #include "validation/cost/lens_methods.h"
 
 namespace lorgnette::validation {
@@ -62,15 +63,10 @@ struct MeshNormals {
   }
 };
 
-class FacetLens {
+// Both surfaces in Embree: packets of 16 against the front, bent, then against the back.
+class EmbreeLens {
  public:
-  FacetLens(EmbreeScene scene, MeshNormals front, MeshNormals back, double index,
-            const CameraRays& rays)
-      : scene_(std::move(scene)),
-        front_(std::move(front)),
-        back_(std::move(back)),
-        index_(float(index)),
-        rays_(rays) {
+  EmbreeLens(double index, const CameraRays& rays) : index_(float(index)), rays_(rays) {
     for (std::size_t i = 0; i < rays.size(); ++i) {
       if (rays.inside(i)) directions_.push_back(rays.direction(i).cast<float>());
     }
@@ -78,17 +74,20 @@ class FacetLens {
     exits_.resize(directions_.size());
   }
 
-  void Trace(bool flat) {
+  // meet(back, packet, normals): traces the packet against a surface and gives the normals there.
+  template <typename Meet>
+  void Trace(const Meet& meet) {
     constexpr std::size_t kSize = RayPacket::kSize;
     const Eigen::Vector3f eye = rays_.origin().cast<float>();
     RayPacket packet;
+    EmbreeShape::Normals normals;
     for (std::size_t first = 0; first < directions_.size(); first += kSize) {
       for (std::size_t k = 0; k < kSize; ++k) {
         const std::size_t i = std::min(first + k, directions_.size() - 1);
         packet.valid[k] = first + k < directions_.size() ? -1 : 0;
         Set(packet, k, eye, directions_[i]);
       }
-      scene_.Intersect16(RaySet::kHead, packet);
+      meet(false, packet, normals);
       for (std::size_t k = 0; k < kSize; ++k) {
         if (!packet.valid[k]) continue;
         if (packet.object[k] == SceneObject::kNone) {
@@ -97,11 +96,9 @@ class FacetLens {
           continue;
         }
         const Eigen::Vector3f& d = directions_[first + k];
-        const Eigen::Vector3f inside =
-            Bend(d, front_.At(flat, packet.triangle[k], packet.u[k], packet.v[k]), 1 / index_);
-        Set(packet, k, eye + packet.far[k] * d, inside);
+        Set(packet, k, eye + packet.far[k] * d, Bend(d, normals[k], 1 / index_));
       }
-      scene_.Intersect16(RaySet::kFrame, packet);
+      meet(true, packet, normals);
       for (std::size_t k = 0; k < kSize; ++k) {
         if (!packet.valid[k]) continue;
         if (packet.object[k] == SceneObject::kNone) {
@@ -111,8 +108,7 @@ class FacetLens {
         const Eigen::Vector3f d(packet.dx[k], packet.dy[k], packet.dz[k]);
         points_[first + k] =
             Eigen::Vector3f(packet.ox[k], packet.oy[k], packet.oz[k]) + packet.far[k] * d;
-        exits_[first + k] =
-            Bend(d, back_.At(flat, packet.triangle[k], packet.u[k], packet.v[k]), index_);
+        exits_[first + k] = Bend(d, normals[k], index_);
       }
     }
   }
@@ -149,19 +145,82 @@ class FacetLens {
     return eta * d + (std::copysign(std::sqrt(after2), c) - eta * c) * normal;
   }
 
-  EmbreeScene scene_;
-  MeshNormals front_, back_;
   float index_;
   const CameraRays& rays_;
   std::vector<Eigen::Vector3f> directions_, points_, exits_;
 };
 
+// Meshes of both surfaces, in one scene.
+struct FacetLens {
+  EmbreeScene scene;
+  MeshNormals front, back;
+  EmbreeLens lens;
+
+  void Trace(bool flat) {
+    lens.Trace([&](bool at_back, RayPacket& packet, EmbreeShape::Normals& normals) {
+      scene.Intersect16(at_back ? RaySet::kFrame : RaySet::kHead, packet);
+      for (std::size_t k = 0; k < normals.size(); ++k) {
+        if (!packet.valid[k] || packet.object[k] == SceneObject::kNone) continue;
+        normals[k] =
+            (at_back ? back : front).At(flat, packet.triangle[k], packet.u[k], packet.v[k]);
+      }
+    });
+  }
+};
+
+// Room for the rays: they cross the front up to a tenth farther out than they meet its vertex
+// plane.
+constexpr double kMargin = 0.55;
+
+// The surfaces themselves as shapes of Embree.
+Result<LensMethod> UserGeometry(const Lens& lens, const CameraRays& rays) {
+  struct Shapes {
+    EmbreeShape front, back;
+    EmbreeLens lens;
+  };
+  const auto shape = [&](bool back) {
+    const double x = kMargin * rays.view().width_mm, y = kMargin * rays.view().height_mm;
+    Eigen::AlignedBox3d box;
+    for (const Eigen::Vector2d& corner :
+         {Eigen::Vector2d(0, 0), Eigen::Vector2d(x, y), Eigen::Vector2d(x, -y)}) {
+      for (const double sign : {-1.0, 1.0}) {
+        const auto jet = (back ? lens.back : lens.front).Jet(sign * corner.x(), sign * corner.y());
+        const double z = (jet ? jet->z : 0) + (back ? lens.center_thickness_mm : 0);
+        box.extend(Eigen::Vector3d(sign * corner.x(), sign * corner.y(), z));
+      }
+    }
+    box.min().z() -= 1;
+    box.max().z() += 1;
+    return EmbreeShape::Build(
+        box.cast<float>(),
+        [&lens, back](const Eigen::Vector3f& origin,
+                      const Eigen::Vector3f& direction) -> std::optional<EmbreeShape::Hit> {
+          const Ray ray{origin.cast<double>(), direction.cast<double>()};
+          const auto hit = back ? IntersectBack(lens, ray) : lens.front.Intersect(ray);
+          if (!hit) return std::nullopt;
+          return EmbreeShape::Hit{float(hit->distance), hit->normal.cast<float>()};
+        });
+  };
+  LG_ASSIGN(EmbreeShape front, shape(false));
+  LG_ASSIGN(EmbreeShape back, shape(true));
+  const auto shapes = std::make_shared<Shapes>(
+      Shapes{std::move(front), std::move(back), EmbreeLens(lens.medium.index_d, rays)});
+  return LensMethod{
+      "Embree user geometry", "float",
+      [shapes] {
+        shapes->lens.Trace([&](bool at_back, RayPacket& packet, EmbreeShape::Normals& normals) {
+          (at_back ? shapes->back : shapes->front).Intersect16(packet, normals);
+        });
+      },
+      [shapes] {
+        return LensAnswer{shapes->lens.Answer(), {}, {}};
+      }};
+}
+
 }  // namespace
 
 Result<std::vector<LensMethod>> MeshMethods(const Lens& lens, const CameraRays& rays, int most) {
   std::vector<LensMethod> flat, smooth;
-  // Rays to the rim cross the front up to a tenth farther out than they meet its vertex plane.
-  constexpr double kMargin = 0.55;
   for (int cells = 16; 4 * cells * cells <= most; cells *= 2) {
     const auto mesh = [&](bool back) {
       return SurfaceMesh(lens, back, kMargin * rays.view().width_mm,
@@ -170,19 +229,21 @@ Result<std::vector<LensMethod>> MeshMethods(const Lens& lens, const CameraRays& 
     LG_ASSIGN(const TriangleMesh front, mesh(false));
     LG_ASSIGN(const TriangleMesh back, mesh(true));
     LG_ASSIGN(EmbreeScene scene, EmbreeScene::Build(front, TriangleMesh{}, back));
-    const auto facets = std::make_shared<FacetLens>(std::move(scene), MeshNormals(front),
-                                                    MeshNormals(back), lens.medium.index_d, rays);
+    const auto facets = std::make_shared<FacetLens>(FacetLens{
+        std::move(scene), MeshNormals(front), MeshNormals(back), {lens.medium.index_d, rays}});
     const std::string size = fmt::format("{} triangles", 4 * cells * cells);
     for (const bool is_flat : {true, false}) {
       (is_flat ? flat : smooth)
           .push_back({is_flat ? "mesh, flat normals" : "mesh, interpolated normals", size,
                       [facets, is_flat] { facets->Trace(is_flat); },
                       [facets] {
-                        return LensAnswer{facets->Answer(), {}, {}};
+                        return LensAnswer{facets->lens.Answer(), {}, {}};
                       }});
     }
   }
   flat.insert(flat.end(), smooth.begin(), smooth.end());
+  LG_ASSIGN(LensMethod user, UserGeometry(lens, rays));
+  flat.push_back(std::move(user));
   return flat;
 }
 

@@ -112,7 +112,7 @@ Result<CostStudy> PictureStudy(const WornScene& scene, const CostOptions& option
   }
   for (const bool adaptive : {false, true}) {
     for (const int side : {1, 2, 3, 4, 6, 8}) {
-      if (adaptive && side == 1) continue;
+      if (adaptive && side <= standard.samples_per_side) continue;  // one sample; the standard
       CompositorOptions o = standard;
       o.samples_per_side = side;
       o.adaptive = adaptive;

@@ -91,17 +91,22 @@ Result<CostBudget> ParseBudget(const std::string& max_error, const std::string& 
   return budget;
 }
 
+bool Applies(const CostStudy& study, const CostBudget& budget) {
+  return (budget.max_error && UnitIndex(study, budget.error_unit)) ||
+         (budget.max_ms && study.ms_per_frame > 0);
+}
+
 const CostPoint* Recommend(const CostStudy& study, const CostBudget& budget) {
+  if (!Applies(study, budget)) return nullptr;
   const auto unit = UnitIndex(study, budget.error_unit);
-  if (budget.max_error && !unit) return nullptr;
+  const bool bounded = budget.max_error && unit;
   const bool timed = budget.max_ms.has_value() && study.ms_per_frame > 0;
-  if (!budget.max_error && !timed) return nullptr;
   const CostPoint* best = nullptr;
   for (const CostPoint& point : study.points) {
-    if (budget.max_error && point.errors[*unit] > *budget.max_error) continue;
+    if (bounded && point.errors[*unit] > *budget.max_error) continue;
     if (timed && point.time * study.ms_per_frame > *budget.max_ms) continue;
-    const bool better = best == nullptr || (budget.max_error ? point.time < best->time
-                                                             : point.errors[0] < best->errors[0]);
+    const bool better =
+        best == nullptr || (bounded ? point.time < best->time : point.errors[0] < best->errors[0]);
     if (better) best = &point;
   }
   return best;

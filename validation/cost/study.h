@@ -66,9 +66,12 @@ struct CostBudget {
 // "0.1px", "0.1 px", "0.5%" (magnification), "0.01D", "1arcmin", "0.02ratio", "1.5levels".
 Result<CostBudget> ParseBudget(const std::string& max_error, const std::string& max_time);
 
-// The fastest point within the error budget, or, with a time budget alone, the most accurate one
-// within it; nullptr when the study has no such unit or no point keeps the budget. A study without
-// a time a frame answers to the error alone.
+// Whether the budget says anything about the study: an error in one of its units, or a time where a
+// frame has such work.
+bool Applies(const CostStudy& study, const CostBudget& budget);
+// The fastest point within the error budget (and the time budget); where the error is none of the
+// study's units or there is none, the most accurate point within the time. nullptr when no point
+// keeps the budget or it does not apply.
 const CostPoint* Recommend(const CostStudy& study, const CostBudget& budget);
 
 // --- writing

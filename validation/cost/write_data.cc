@@ -128,7 +128,8 @@ std::string CostText(const CostReport& report, const CostBudget* budget) {
       }
       text += ")\n";
     } else {
-      text += "  this budget: nothing here keeps it, or it does not apply\n";
+      text += Applies(study, *budget) ? "  nothing here keeps this budget\n"
+                                      : "  this budget says nothing about this study\n";
     }
   }
   return text;

@@ -177,7 +177,9 @@ std::string CostHtml(const CostReport& report, const CostBudget* budget) {
       body += best != nullptr
                   ? fmt::format("<p>For this budget: <strong>{}</strong>.</p>\n",
                                 HtmlEscape(Name(*best)))
-                  : std::string("<p>Nothing here keeps this budget, or it does not apply.</p>\n");
+                  : std::string(Applies(study, *budget)
+                                    ? "<p>Nothing here keeps this budget.</p>\n"
+                                    : "<p>This budget says nothing about this study.</p>\n");
     }
     for (std::size_t unit = 0; unit < study.units.size(); ++unit) {
       if (unit == 1) body += "<details><summary>The other measures of error</summary>\n";
@@ -198,10 +200,11 @@ std::string CostHtml(const CostReport& report, const CostBudget* budget) {
     }
     body += "<th></th></tr>\n";
     for (const CostPoint& p : study.points) {
-      body +=
-          fmt::format("<tr{}><td>{}</td><td class=\"number\">{}</td><td class=\"number\">{}</td>",
-                      p.front ? " class=\"front\"" : "", HtmlEscape(Name(p)), Short(p.time),
-                      Short(p.time_spread / 2));
+      body += fmt::format(
+          "<tr{}><td class=\"name\">{}</td><td class=\"number\">{}</td><td "
+          "class=\"number\">{}</td>",
+          p.front ? " class=\"front\"" : "", HtmlEscape(Name(p)), Short(p.time),
+          Short(p.time_spread / 2));
       if (per_frame) {
         body += fmt::format("<td class=\"number\">{}</td>", Short(p.time * study.ms_per_frame));
       }
