@@ -41,13 +41,15 @@ def machine_name():
 
 
 def read_run(path):
-    """{name: {"median_ns", "spread", "ratio", counters}} of one program's run."""
+    """{name: {"median_ns", "spread", "ratio", counters}} of one program's run, and what it could
+    not run: {name: reason}."""
     with open(path, encoding="utf-8") as file:
         rows = json.load(file)["benchmarks"]
-    times, counters, growth = {}, {}, {}
+    times, counters, growth, failed = {}, {}, {}, {}
     for row in rows:
         name = row["run_name"] if "run_name" in row else row["name"]
         if row.get("error_occurred"):
+            failed[name] = row.get("error_message", "")
             continue
         if row.get("aggregate_name") == "BigO":
             growth[name] = row.get("big_o", "")
@@ -62,7 +64,7 @@ def read_run(path):
         middle = statistics.median(values)
         spread = statistics.median([abs(v - middle) for v in values]) / middle if middle else 0
         found[name] = {"median_ns": middle, "spread": spread, "counters": counters[name]}
-    calibrations = [f["median_ns"] for name, f in found.items() if "/calibration" in name]
+    calibrations = [found[name]["median_ns"] for name in sorted(found) if "/calibration" in name]
     if not calibrations:
         sys.exit(f"{path}: has no benchmark with /calibration in its name")
     for name, one in found.items():
@@ -71,7 +73,7 @@ def read_run(path):
         for key, big_o in growth.items():
             if family.startswith(key):
                 one["growth"] = big_o
-    return found
+    return found, failed
 
 
 def compare(now, before):
@@ -81,6 +83,16 @@ def compare(now, before):
     change = now["ratio"] / before["ratio"] - 1
     noise = max(LEAST_CHANGE, SPREADS * (now["spread"] + before["spread"]))
     return change, abs(change) > noise
+
+
+def in_order(name):
+    """Names with their numbers as numbers: 64 before 128."""
+    return [(part.isdigit(), int(part) if part.isdigit() else 0, part)
+            for part in re.split(r"(\d+)", name)]
+
+
+def count_text(value):
+    return f"{value:,.0f}" if abs(value) >= 1000 else f"{value:.3g}"
 
 
 def time_text(nanoseconds):
@@ -100,15 +112,16 @@ body { font: 16px/1.45 system-ui, sans-serif; color: var(--ink); background: var
 h1 { font-size: 1.5rem; } h2 { font-size: 1.1rem; margin: 2rem 0 .25rem; }
 .quiet { color: var(--quiet); } .bad { color: var(--bad); font-weight: 700; }
 .good { color: var(--good); font-weight: 700; } .wide { overflow-x: auto; }
-table { border-collapse: collapse; width: 100%; font-variant-numeric: tabular-nums; }
+table { border-collapse: collapse; width: 100%; min-width: 46rem; font-variant-numeric: tabular-nums; }
 th, td { text-align: left; padding: .25rem .6rem .25rem 0; border-bottom: 1px solid var(--line); }
 td.number, th.number { text-align: right; white-space: nowrap; }
 """
 
 
-def page(machine, results, baseline):
+def page(machine, results, failed, baseline):
     modules = {}
-    for name, one in sorted(results.items()):
+    for name in sorted(results, key=in_order):
+        one = results[name]
         match = MODULE.match(name)
         modules.setdefault(match.group(1) if match else "other", []).append((name, one))
     body = [f"<h1>Lorgnette: benchmarks</h1><p class=\"quiet\">{html.escape(machine)}. Medians of "
@@ -124,16 +137,18 @@ def page(machine, results, baseline):
             change, flagged = compare(one, baseline.get(name))
             kind = ("bad" if change > 0 else "good") if flagged else ""
             text = "" if change is None else f"{100 * change:+.1f} %"
-            counts = ", ".join(f"{k} {v:.3g}" for k, v in one["counters"].items()
+            counts = ", ".join(f"{k} {count_text(v)}" for k, v in one["counters"].items()
                                if isinstance(v, (int, float)))
             if one.get("growth"):
                 counts += (", " if counts else "") + "grows as " + one["growth"]
             body.append(
-                f"<tr><td>{html.escape(name)}</td><td class=\"number\">"
+                f"<tr><td>{html.escape(name.split('/process_time')[0])}</td><td class=\"number\">"
                 f"{time_text(one['median_ns'])}</td><td class=\"number\">"
                 f"{100 * one['spread']:.1f} %</td><td class=\"number\">{one['ratio']:.4g}</td>"
                 f"<td class=\"number {kind}\">{text}</td><td>{html.escape(counts)}</td></tr>")
         body.append("</table></div>")
+    for name, reason in sorted(failed.items()):
+        body.append(f"<p class=\"bad\">{html.escape(name)} was not run: {html.escape(reason)}</p>")
     return ("<!doctype html>\n<html lang=\"en\"><head><meta charset=\"utf-8\"><meta "
             "name=\"viewport\" content=\"width=device-width, initial-scale=1\"><title>Lorgnette: "
             f"benchmarks</title><style>{STYLE}</style></head><body>" + "\n".join(body) +
@@ -148,14 +163,17 @@ def main(argv):
     parser.add_argument("runs", nargs="+")
     options = parser.parse_args(argv)
 
-    results = {}
+    results, failed = {}, {}
     for path in options.runs:
-        results.update(read_run(path))
+        found, missing = read_run(path)
+        results.update(found)
+        failed.update(missing)
     machine = machine_name()
     path = os.path.join(options.folder, machine + ".json")
     if options.baseline:
         kept = {name: {"median_ns": round(one["median_ns"], 2), "ratio": float(f"{one['ratio']:.4g}"),
                        "spread": round(one["spread"], 4)} for name, one in sorted(results.items())}
+        os.makedirs(options.folder, exist_ok=True)
         with open(path, "w", encoding="utf-8") as file:
             json.dump({"machine": machine, "benchmarks": kept}, file, indent=1)
             file.write("\n")
@@ -166,7 +184,7 @@ def main(argv):
             baseline = json.load(file)["benchmarks"]
     if options.out:
         with open(options.out, "w", encoding="utf-8") as file:
-            file.write(page(machine, results, baseline))
+            file.write(page(machine, results, failed, baseline))
         print(options.out)
     flagged = 0
     for name, one in sorted(results.items()):
@@ -174,6 +192,8 @@ def main(argv):
         if beyond:
             flagged += 1
             print(f"{name}: {100 * change:+.1f} % of its ratio to the calibration kernel")
+    for name, reason in sorted(failed.items()):
+        print(f"{name}: not run: {reason}")
     if not baseline:
         print(f"no baseline of this machine ({path}); scripts/bench --baseline writes one")
     else:

@@ -1,12 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
 // Contour, cut, lens mesh, import and fit, each with what it gets right as a counter.
-// `geometry/calibration` is a fixed amount of arithmetic in the same process: compare with it,
-// since machines are noisy.
+// `geometry/calibration/chain` is a fixed amount of arithmetic in the same process: compare with
+// it, since machines are noisy.
 #include <benchmark/benchmark.h>
 
 #include <algorithm>
 #include <cmath>
 
+#include "bench/calibration.h"
 #include "geometry/closed_curve.h"
 #include "geometry/contour.h"
 #include "geometry/cut_lens.h"
@@ -20,16 +21,7 @@
 namespace lorgnette {
 namespace {
 
-// Multiplications and additions in one chain.
-void BM_Calibration(benchmark::State& state) {
-  for (auto _ : state) {
-    double x = 0.5;
-    for (int i = 0; i < 1000000; ++i) x = x * 0.999999 + 1e-6;
-    benchmark::DoNotOptimize(x);
-  }
-  state.SetItemsProcessed(state.iterations() * 1000000);
-}
-BENCHMARK(BM_Calibration)->Name("geometry/calibration")->Unit(benchmark::kMillisecond);
+BENCHMARK(bench::Calibration)->Name("geometry/calibration/chain");
 
 const FrameModel& Rectangle() {
   static const FrameModel kFrame = *LoadFrame("rectangle");
@@ -87,13 +79,15 @@ void BM_Cut(benchmark::State& state) {
       1e6 * std::abs(CheckMesh(mesh, false).volume_mm3 / truth - 1);
   state.counters["triangles"] = double(mesh.triangles.size());
   state.SetItemsProcessed(state.iterations() * std::int64_t(mesh.triangles.size()));
+  state.SetComplexityN(std::int64_t(mesh.triangles.size()));
 }
 BENCHMARK(BM_Cut)
     ->Name("geometry/cut/element_tenths")
     ->Arg(30)
     ->Arg(15)
     ->Arg(5)
-    ->Unit(benchmark::kMillisecond);
+    ->Unit(benchmark::kMillisecond)
+    ->Complexity();
 
 // One of our frames as a model file would bring it: axes, rims, repair, temples; error of A.
 void BM_Import(benchmark::State& state) {

@@ -82,14 +82,14 @@ template <typename T>
 struct Rays {
   std::vector<T> in[6], out[6];
   std::vector<std::uint8_t> status;
-  Rays() : status(kRays) {
+  explicit Rays(std::size_t count = kRays) : status(count) {
     for (int k = 0; k < 6; ++k) {
-      in[k].resize(kRays);
-      out[k].resize(kRays);
+      in[k].resize(count);
+      out[k].resize(count);
     }
     std::mt19937_64 random(1);
     std::uniform_real_distribution<double> unit(0, 1);
-    for (std::size_t i = 0; i < kRays; ++i) {
+    for (std::size_t i = 0; i < count; ++i) {
       const double r = 25 * std::sqrt(unit(random)), a = 6.283185307 * unit(random);
       const Eigen::Vector3d d = Eigen::Vector3d(r * std::cos(a), r * std::sin(a), 500).normalized();
       const double values[] = {0, 0, -500, d.x(), d.y(), d.z()};
@@ -109,7 +109,7 @@ struct Rays {
 template <typename T>
 void CountErrors(const Lens& lens, const Rays<T>& rays, benchmark::State& state) {
   double position = 0, direction = 0;
-  for (std::size_t i = 0; i < kRays; i += 7) {
+  for (std::size_t i = 0; i < rays.status.size(); i += 7) {
     const auto field = [&](const std::vector<T>* v, int k) {
       return oracle::Vec(v[k][i], v[k + 1][i], v[k + 2][i]);
     };
@@ -136,14 +136,14 @@ void CountErrors(const Lens& lens, const Rays<T>& rays, benchmark::State& state)
 }
 
 template <typename T>
-void TraceBatch(benchmark::State& state, const Lens& lens) {
-  Rays<T> rays;
+void TraceBatch(benchmark::State& state, const Lens& lens, std::size_t count = kRays) {
+  Rays<T> rays(count);
   for (auto _ : state) {
-    TraceLensBatch(lens, kIndex, rays.Input(), kRays, {rays.Output(), rays.status.data()});
+    TraceLensBatch(lens, kIndex, rays.Input(), count, {rays.Output(), rays.status.data()});
     benchmark::DoNotOptimize(rays.out[0].data());
     benchmark::ClobberMemory();
   }
-  state.SetItemsProcessed(state.iterations() * std::int64_t(kRays));
+  state.SetItemsProcessed(state.iterations() * std::int64_t(count));
   state.SetLabel(LensKernelTarget());
   CountErrors(lens, rays, state);
 }
@@ -198,6 +198,16 @@ void AtoroidFloat(benchmark::State& state) { TraceBatch<float>(state, AtoroidBac
 void GridDouble(benchmark::State& state) { TraceBatch<double>(state, GridFront()); }
 void GridFloat(benchmark::State& state) { TraceBatch<float>(state, GridFront()); }
 void GridScalar(benchmark::State& state) { TraceScalar(state, GridFront()); }
+// Growth with the number of rays, from what the first-level cache holds to what it does not.
+void SpherePairGrowth(benchmark::State& state) {
+  TraceBatch<double>(state, SpherePair(), std::size_t(state.range(0)));
+  state.SetComplexityN(state.range(0));
+}
+BENCHMARK(SpherePairGrowth)
+    ->Name("optics/trace/sphere_pair/double/rays")
+    ->RangeMultiplier(8)
+    ->Range(64, 1 << 15)
+    ->Complexity(benchmark::oN);
 BENCHMARK(SpherePairDouble)->Name("optics/trace/sphere_pair/double");
 BENCHMARK(SpherePairFloat)->Name("optics/trace/sphere_pair/float");
 BENCHMARK(SpherePairScalar)->Name("optics/trace/sphere_pair/scalar");

@@ -1,13 +1,14 @@
 // SPDX-License-Identifier: Apache-2.0
 // The compositor on a 720p frame of a video (display-encoded in and out) with a face about 350
 // pixels wide, everything of the paper on.
-// `render/calibration` is a fixed amount of arithmetic in the same process: compare with it, since
-// machines are noisy.
+// `render/calibration/chain` is a fixed amount of arithmetic in the same process: compare with it,
+// since machines are noisy.
 #include <benchmark/benchmark.h>
 
 #include <cmath>
 
 #include "base/units.h"
+#include "bench/calibration.h"
 #include "geometry/eyewear.h"
 #include "optics/certify.h"
 #include "optics/design.h"
@@ -17,16 +18,7 @@
 namespace lorgnette {
 namespace {
 
-// Multiplications and additions in one chain.
-void BM_Calibration(benchmark::State& state) {
-  for (auto _ : state) {
-    double x = 0.5;
-    for (int i = 0; i < 1000000; ++i) x = x * 0.999999 + 1e-6;
-    benchmark::DoNotOptimize(x);
-  }
-  state.SetItemsProcessed(state.iterations() * 1000000);
-}
-BENCHMARK(BM_Calibration)->Name("render/calibration")->Unit(benchmark::kMillisecond);
+BENCHMARK(bench::Calibration)->Name("render/calibration/chain");
 
 std::vector<Eigen::Vector2d> Outline() {
   std::vector<Eigen::Vector2d> contour;
@@ -106,11 +98,15 @@ struct Setup {
                   Eigen::Isometry3d(Eigen::Translation3d(0, 0, 14)), WearingPosition{}};
   TriangleMesh face = Face();
   Environment environment = Environment::Constant({0.8f, 0.9f, 1});
-  ImageRgb8 input{1280, 720};
-  Camera camera{1280, 720, 1170, 1170, 640, 360};
+  ImageRgb8 input;
+  Camera camera;
   Eigen::Isometry3d camera_from_head = Eigen::Isometry3d::Identity();
 
-  Setup() {
+  // 16:9; the head fills the same share of a picture of any height.
+  explicit Setup(int height)
+      : input(height * 16 / 9, height), camera{input.width,       height,
+                                               1.625 * height,    1.625 * height,
+                                               0.5 * input.width, 0.5 * height} {
     FramePart part;
     part.name = "front";
     part.kind = FramePartKind::kFront;
@@ -124,8 +120,8 @@ struct Setup {
       }
     }
     environment = Environment(std::move(map));
-    for (int y = 0; y < 720; ++y) {
-      for (int x = 0; x < 1280; ++x) {
+    for (int y = 0; y < input.height; ++y) {
+      for (int x = 0; x < input.width; ++x) {
         for (int c = 0; c < 3; ++c) {
           input.at(x, y)[c] = CodeFromLinear(0.3f + 0.1f * std::sin(0.05f * float(x + c)) *
                                                         std::cos(0.07f * float(y)));
@@ -138,12 +134,12 @@ struct Setup {
 };
 
 const Setup& TheSetup() {
-  static const Setup setup;
+  static const Setup setup(720);
   return setup;
 }
 
-void Render(benchmark::State& state, const CompositorOptions& options) {
-  const Setup& setup = TheSetup();
+void Render(benchmark::State& state, const CompositorOptions& options,
+            const Setup& setup = TheSetup()) {
   const Compositor compositor =
       *Compositor::Create(setup.eyewear, setup.face, TriangleMesh{}, setup.environment, options);
   RenderCounts counts;
@@ -201,18 +197,45 @@ BENCHMARK(BM_Paper)
     ->UseRealTime()
     ->MeasureProcessCPUTime();
 
-void BM_Create(benchmark::State& state) {
-  const Setup& setup = TheSetup();
-  for (auto _ : state) {
-    benchmark::DoNotOptimize(Compositor::Create(setup.eyewear, setup.face, TriangleMesh{},
-                                                setup.environment, CompositorOptions{}));
-  }
+// Growth with the pixels of the frame.
+void BM_Growth(benchmark::State& state) {
+  const Setup setup(int(state.range(0)));
+  CompositorOptions options;
+  options.adaptive = true;
+  Render(state, options, setup);
+  state.SetComplexityN(std::int64_t(setup.input.width) * setup.input.height);
 }
-BENCHMARK(BM_Create)
-    ->Name("render/compositor/create_and_bake")
+BENCHMARK(BM_Growth)
+    ->Name("render/compositor/adaptive/height")
+    ->Arg(360)
+    ->Arg(720)
+    ->Arg(1440)
     ->Unit(benchmark::kMillisecond)
     ->UseRealTime()
-    ->MeasureProcessCPUTime();
+    ->MeasureProcessCPUTime()
+    ->Complexity(benchmark::oN);
+
+// Scene, trees and baked light, by the directions baked for a point of the face.
+void BM_Create(benchmark::State& state) {
+  const Setup& setup = TheSetup();
+  CompositorOptions options;
+  options.shadow_directions = int(state.range(0));
+  for (auto _ : state) {
+    benchmark::DoNotOptimize(
+        Compositor::Create(setup.eyewear, setup.face, TriangleMesh{}, setup.environment, options));
+  }
+  state.SetComplexityN(state.range(0));
+}
+BENCHMARK(BM_Create)
+    ->Name("render/compositor/create_and_bake/directions")
+    ->Arg(256)
+    ->Arg(512)
+    ->Arg(1024)
+    ->Arg(2048)
+    ->Unit(benchmark::kMillisecond)
+    ->UseRealTime()
+    ->MeasureProcessCPUTime()
+    ->Complexity(benchmark::oN);
 
 }  // namespace
 }  // namespace lorgnette

@@ -100,8 +100,15 @@ void FitOnePose(benchmark::State& state) {
   }
   state.SetItemsProcessed(state.iterations());
   state.counters["error_mm"] = error_mm;
+  state.SetComplexityN(state.range(0));
 }
-BENCHMARK(FitOnePose)->Name("tracking/pose_fit/points")->Arg(110)->Arg(468);
+BENCHMARK(FitOnePose)
+    ->Name("tracking/pose_fit/points")
+    ->Arg(55)
+    ->Arg(110)
+    ->Arg(234)
+    ->Arg(468)
+    ->Complexity(benchmark::oN);
 
 }  // namespace
 }  // namespace lorgnette
