@@ -25,6 +25,7 @@ struct TryonCommandOptions {
   bool no_refraction = false, no_reflection = false, no_shadow = false;
   EffectOptions effects;
   std::vector<double> nudge;
+  std::string frame_finish, frame_color;  // empty: the frame's own
   std::string medium = "CR-39";
   std::optional<double> index;
 };
@@ -70,6 +71,12 @@ Status RunTryonCommand(TryonCommandOptions options, std::ostream& out) {
                                   kMaxSamplesPerSide));
   }
   LG_ASSIGN(request.eyewear.medium, MediumFromOptions(options.medium, options.index, std::nullopt));
+  if (!options.frame_finish.empty()) {
+    LG_ASSIGN(request.frame_finish, FindFrameFinish(options.frame_finish));
+  }
+  if (!options.frame_color.empty()) {
+    LG_ASSIGN(request.frame_color, ParseFrameColor(options.frame_color));
+  }
   LG_ASSIGN(request.effects, ApplyEffectOptions(options.effects, compositor));
   const auto without = [&](Effect effect) {
     request.effects.wish[std::size_t(effect)] = EffectWish::kOff;
@@ -125,6 +132,11 @@ void AddTryonCommand(CLI::App& program, CommandContext& context) {
                      "prescription's OMA job, or a new one");
   command.add_option("--unit", request.frame_unit_mm,
                      "Millimetres in one unit of the frame file, where it does not say");
+  command.add_option("--frame-color", options->frame_color, "Colour of the frame, #RRGGBB");
+  command
+      .add_option("--frame-finish", options->frame_finish,
+                  "Finish of the frame, in place of its own")
+      ->check(CLI::IsMember(FrameFinishNames()));
   command.add_flag("--no-refraction", options->no_refraction, "Leave out refraction");
   command.add_flag("--no-reflection", options->no_reflection, "Leave out reflection");
   command.add_flag("--no-shadow", options->no_shadow, "Leave out the shadow");

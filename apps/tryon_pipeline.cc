@@ -419,6 +419,7 @@ Result<TryonResult> RunTryon(const TryonRequest& request) {
     result.temple_opening_deg = fit.temple_opening_deg;
     occluder = BuildHeadOccluder(track.face, fit.ears);
     result.eyewear = std::move(fitted.eyewear);
+    Refinish(request.frame_finish, request.frame_color, result.eyewear->frame);
   }
   const auto prepare = [&] {
     const Timer timer(seconds.prepare);

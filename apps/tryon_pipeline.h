@@ -13,6 +13,7 @@
 #include "base/result.h"
 #include "geometry/assemble.h"
 #include "geometry/fit.h"
+#include "geometry/frame_finish.h"
 #include "render/compositor.h"
 #include "tracking/head_track.h"
 
@@ -25,7 +26,9 @@ struct TryonRequest {
   std::string track;        // track file; empty: the video is tracked
   std::string report;       // empty: none
   std::string oma;          // lens results for the lab; empty: none
-  std::optional<double> frame_unit_mm;  // of a frame file that does not say
+  std::optional<double> frame_unit_mm;         // of a frame file that does not say
+  std::optional<FrameFinish> frame_finish;     // in place of the frame's own
+  std::optional<Eigen::Vector3f> frame_color;  // linear Rec.709, in place of the frame's own
   std::string model_dir;
   FrameRange frames;
   std::optional<double> pd_mm;  // in place of the prescription's

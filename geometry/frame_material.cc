@@ -97,18 +97,22 @@ PbrPoint EvaluatePbr(const PbrMaterial& material, const Eigen::Vector2f& uv) {
   return point;
 }
 
+float LobeExponent(float roughness) {
+  const float a = std::clamp(roughness * roughness, 0.03f, 1.0f);
+  return std::clamp(2 / (a * a) - 2, 1.0f, 1000.0f);
+}
+
 FrameMaterial PhongLike(PbrMaterial material) {
   Eigen::Vector3f base = material.base_color;
   if (material.base_color_texture) {
     base = base.cwiseProduct(MeanColor(*material.base_color_texture));
   }
   const float metal = std::clamp(material.metallic, 0.0f, 1.0f);
-  const float a = std::clamp(material.roughness * material.roughness, 0.03f, 1.0f);
   const float mirrored = std::pow((material.ior - 1) / (material.ior + 1), 2.0f);
   FrameMaterial phong;
   phong.diffuse = base * (1 - metal) + base * (0.25f * metal);
   phong.specular = Eigen::Vector3f::Constant(mirrored * (1 - metal)) + base * (0.75f * metal);
-  phong.shininess = std::clamp(2 / (a * a) - 2, 1.0f, 1000.0f);
+  phong.shininess = LobeExponent(material.roughness);
   phong.pbr = std::make_shared<const PbrMaterial>(std::move(material));
   return phong;
 }

@@ -58,6 +58,9 @@ struct PbrPoint {
 };
 PbrPoint EvaluatePbr(const PbrMaterial& material, const Eigen::Vector2f& uv);
 
+// Exponent of the Phong lobe that is as wide as GGX of a roughness: 2 / a^2 - 2, a = roughness^2.
+float LobeExponent(float roughness);
+
 // The Phong material that comes nearest: a dielectric mirrors ((ior - 1) / (ior + 1))^2, a metal
 // its base colour; the lobe is as wide as that of roughness squared (exponent 2 / a^2 - 2).
 FrameMaterial PhongLike(PbrMaterial material);

@@ -21,7 +21,7 @@ FrameSurface JoinParts(const Eyewear& eyewear, const Environment& environment) {
   for (const FramePart& part : eyewear.frame.parts) {
     if (part.kind == FramePartKind::kDemoLens || part.mesh.empty()) continue;
     TriangleMesh mesh = part.mesh;
-    mesh.uvs.clear();
+    mesh.uvs.resize(mesh.positions.size(), Eigen::Vector2f::Zero());
     if (mesh.normals.size() != mesh.positions.size()) ComputeVertexNormals(mesh);
     for (Eigen::Vector3d& p : mesh.positions) p = eyewear.head_from_frame * p;
     for (Eigen::Vector3d& n : mesh.normals) n = eyewear.head_from_frame.rotation() * n;
@@ -34,6 +34,12 @@ FrameSurface JoinParts(const Eyewear& eyewear, const Environment& environment) {
     if (known == lobes.end()) {
       lobes.push_back(part.material.shininess);
       out.gloss.push_back(BlurredEnvironment::ForPhong(environment, part.material.shininess));
+    }
+    if (out.lobes.empty() && part.material.pbr != nullptr &&
+        part.material.pbr->metallic_roughness_texture != nullptr) {
+      for (const float exponent : FrameSurface::kLobes) {
+        out.lobes.push_back(BlurredEnvironment::ForPhong(environment, double(exponent)));
+      }
     }
     Append(out.mesh, mesh);
   }
@@ -64,6 +70,15 @@ double RimDepth(const LensSolid& lens, const TriangleMesh& frame) {
 }
 
 }  // namespace
+
+Eigen::Vector3f FrameSurface::GlossAt(float exponent, const Eigen::Vector3f& direction) const {
+  // Each lobe has four times the exponent of the one before: half its width.
+  const float at =
+      std::clamp(0.5f * std::log2(std::max(exponent, 1.0f)), 0.0f, float(lobes.size() - 1));
+  const std::size_t low = std::min(std::size_t(at), lobes.size() - 2);
+  const float share = at - float(low);
+  return (1 - share) * lobes[low].Radiance(direction) + share * lobes[low + 1].Radiance(direction);
+}
 
 Result<HeadScene> HeadScene::Build(const Eyewear& eyewear, const TriangleMesh& face,
                                    const TriangleMesh& occluder, const Environment& environment,

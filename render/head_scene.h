@@ -19,12 +19,17 @@ namespace lorgnette {
 
 // The frame's parts as one mesh, demo lenses left out.
 struct FrameSurface {
-  TriangleMesh mesh;                       // head space, with normals
+  TriangleMesh mesh;                       // head space, with normals and uvs
   std::vector<std::uint16_t> material_of;  // one a triangle
   std::vector<FrameMaterial> materials;    // one a part
   std::vector<bool> fades;                 // one a part: a temple
   std::vector<BlurredEnvironment> gloss;   // the environment under each Phong lobe in use
   std::vector<std::uint16_t> gloss_of;     // one a part
+  // Under lobes of exponents kLobes, where a texture chooses; empty: none does.
+  std::vector<BlurredEnvironment> lobes;
+  static constexpr float kLobes[6] = {1, 4, 16, 64, 256, 1000};
+  // Radiance along a world direction under a lobe, between the two nearest of `lobes`.
+  Eigen::Vector3f GlossAt(float exponent, const Eigen::Vector3f& direction) const;
   Eigen::Isometry3d frame_from_head = Eigen::Isometry3d::Identity();
   double fade_start_z = 0, fade_end_z = 0;  // frame coordinates: opaque before, gone after
 };

@@ -20,11 +20,6 @@ Ray Transformed(const Eigen::Isometry3d& to_from, const Ray& ray) {
   return {to_from * ray.origin, to_from.linear() * ray.direction};
 }
 
-float SmoothStep(double x, double from, double to) {
-  const double s = std::clamp((x - from) / (to - from), 0.0, 1.0);
-  return float(s * s * (3 - 2 * s));
-}
-
 // Whether the pictures of the two lenses touch, with room for what refraction adds.
 bool LensesOverlap(const HeadScene& head, const Camera& camera,
                    const Eigen::Isometry3d& camera_from_head) {
@@ -89,94 +84,13 @@ RayFollower::RayFollower(const HeadScene& head, const PictureView& picture, cons
   }
 }
 
-std::vector<Eigen::Vector3f> RayFollower::FrameRadiance() const {
-  const FrameSurface& frame = head_.frame;
-  std::vector<Eigen::Vector3f> radiance;
-  for (std::size_t t = 0; t < frame.mesh.triangles.size(); ++t) {
-    const FrameMaterial& material = frame.materials[frame.material_of[t]];
-    for (int k = 0; k < 3; ++k) {
-      radiance.push_back(float(1 / kPi) *
-                         material.diffuse.cwiseProduct(
-                             frame_irradiance_[std::size_t(frame.mesh.triangles[t][k])]));
-    }
-  }
-  return radiance;
-}
-
 Eigen::Vector3f RayFollower::EnvironmentLight(const Eigen::Vector3f& direction) const {
   return float(head_.options.environment_scale) *
          head_.environment.Radiance(world_from_head_ * direction);
 }
 
-float RayFollower::FrameOpacity(const SceneHit& hit, const Eigen::Vector3f& point) const {
-  if (!head_.options.fade_temples || !head_.frame.fades[head_.frame.material_of[hit.triangle]]) {
-    return 1;
-  }
-  return TempleShare(point);
-}
-
-float RayFollower::TempleShare(const Eigen::Vector3f& point) const {
-  const float z = frame_z_.head<3>().dot(point) + frame_z_.w();
-  return 1 - SmoothStep(-double(z), -head_.frame.fade_start_z, -head_.frame.fade_end_z);
-}
-
-std::optional<RayFollower::GlossRay> RayFollower::Gloss(const SceneHit& hit,
-                                                        const Eigen::Vector3f& point,
-                                                        const Eigen::Vector3f& direction) const {
-  const FrameSurface& frame = head_.frame;
-  if (frame.materials[frame.material_of[hit.triangle]].specular.isZero()) return std::nullopt;
-  const Eigen::Vector3i& t = frame.mesh.triangles[hit.triangle];
-  const float w[3] = {1 - hit.u - hit.v, hit.u, hit.v};
-  Eigen::Vector3f normal = Eigen::Vector3f::Zero();
-  for (int k = 0; k < 3; ++k) {
-    normal += w[k] * frame.mesh.normals[std::size_t(t[k])].cast<float>();
-  }
-  normal.normalize();
-  const float along = normal.dot(direction);
-  const Eigen::Vector3f mirrored = direction - 2 * along * normal;
-  if (!(mirrored.dot(normal) * along < 0)) return std::nullopt;
-  constexpr float kLift_mm = 0.1f;
-  return GlossRay{point - std::copysign(kLift_mm, along) * normal, mirrored,
-                  std::min(std::abs(along), 1.0f)};
-}
-
-bool RayFollower::GetsAway(const GlossRay& ray) const {
-  return !head_.scene.Occluded(RaySet::kAll, ray.origin, ray.direction, 0, kInfinity);
-}
-
-bool RayFollower::GlossGetsAway(const SceneHit& hit, const Eigen::Vector3f& point,
-                                const Eigen::Vector3f& direction) const {
-  const auto ray = Gloss(hit, point, direction);
-  return ray && GetsAway(*ray);
-}
-
 Eigen::Vector3f RayFollower::GroundEdge() const {
   return kGroundEdgeAlbedo * float(head_.options.environment_scale) * head_.environment_mean;
-}
-
-Eigen::Vector3f RayFollower::Frame(const SceneHit& hit, const Eigen::Vector3f& point,
-                                   const Eigen::Vector3f& direction,
-                                   std::optional<bool> gloss) const {
-  const FrameSurface& frame = head_.frame;
-  const std::uint16_t part = frame.material_of[hit.triangle];
-  const FrameMaterial& material = frame.materials[part];
-  const Eigen::Vector3i& t = frame.mesh.triangles[hit.triangle];
-  const float w[3] = {1 - hit.u - hit.v, hit.u, hit.v};
-  Eigen::Vector3f irradiance = Eigen::Vector3f::Zero();
-  for (int k = 0; k < 3; ++k) irradiance += w[k] * frame_irradiance_[std::size_t(t[k])];
-  Eigen::Vector3f colour = float(1 / kPi) * material.diffuse.cwiseProduct(irradiance);
-  if (gloss == false || !effects_.rest[Effect::kGloss]) return colour;
-  const auto ray = Gloss(hit, point, direction);
-  if (!ray) return colour;
-  if (!gloss && !GetsAway(*ray)) return colour;
-  // Schlick's rise of reflectance toward grazing.
-  const float off = 1 - ray->cosine;
-  const float rise = off * off * off * off * off;
-  const Eigen::Vector3f strength =
-      material.specular + rise * (Eigen::Vector3f::Ones() - material.specular);
-  return colour + float(head_.options.environment_scale) *
-                      strength.cwiseProduct(frame.gloss[frame.gloss_of[part]].Radiance(
-                          world_from_head_ * ray->direction));
 }
 
 Eigen::Vector3f RayFollower::FaceRatio(const SceneHit& hit, const Eigen::Vector3f& point,
@@ -260,13 +174,13 @@ Eigen::Vector3f RayFollower::AtHit(const SceneHit& hit, const Eigen::Vector3f& o
   if (!hit.hit()) return Miss(origin, direction, transmitted, pixel);
   const Eigen::Vector3f point = origin + hit.distance * direction;
   if (hit.object != SceneObject::kFrame) return Head(hit, point, pixel);
-  const float opacity = FrameOpacity(hit, point);
-  Eigen::Vector3f colour = opacity * Frame(hit, point, direction);
-  if (opacity < 1) {
+  Eigen::Vector3f colour = Frame(hit, point, direction);
+  const Eigen::Vector3f passed = FramePasses(hit, point, direction);
+  if (passed.maxCoeff() > 0) {
     const SceneHit behind = head_.scene.Intersect(RaySet::kHead, point, direction, 0, kInfinity);
     colour +=
-        (1 - opacity) * (behind.hit() ? Head(behind, point + behind.distance * direction, pixel)
-                                      : Miss(point, direction, transmitted, pixel));
+        passed.cwiseProduct(behind.hit() ? Head(behind, point + behind.distance * direction, pixel)
+                                         : Miss(point, direction, transmitted, pixel));
   }
   return colour;
 }

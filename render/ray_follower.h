@@ -73,18 +73,19 @@ class RayFollower {
                         PixelState& pixel) const;
 
   Eigen::Vector3f EnvironmentLight(const Eigen::Vector3f& direction) const;
-  // Frame radiance toward -direction, and its opacity (the temples' feathering).
-  // Colour of the frame.
+  // Light of the frame toward -direction, with the temples' feathering (render/frame_shading.cc).
   //   gloss  GlossGetsAway, where it is known
   Eigen::Vector3f Frame(const SceneHit& hit, const Eigen::Vector3f& point,
                         const Eigen::Vector3f& direction,
                         std::optional<bool> gloss = std::nullopt) const;
+  // Share of the light behind the frame that comes through to -direction: 0 where it is opaque.
+  Eigen::Vector3f FramePasses(const SceneHit& hit, const Eigen::Vector3f& point,
+                              const Eigen::Vector3f& direction) const;
   // Whether the frame's mirrored ray meets neither frame nor head.
   bool GlossGetsAway(const SceneHit& hit, const Eigen::Vector3f& point,
                      const Eigen::Vector3f& direction) const;
   // The edge wall as EdgeFinish::kGround.
   Eigen::Vector3f GroundEdge() const;
-  float FrameOpacity(const SceneHit& hit, const Eigen::Vector3f& point) const;
   // Radiance of the frame's triangles at their corners, without highlights.
   std::vector<Eigen::Vector3f> FrameRadiance() const;
   // Equation (2)'s factor at a point of the head.
@@ -100,13 +101,26 @@ class RayFollower {
                   bool from_glass) const;
   // Whether a ray inside the glass (lens frame) next meets the wall, or the rim's reach of it.
   bool ReachesEdge(std::size_t lens, const Ray& ray) const;
+  // The frame's surface at a hit.
+  struct FramePoint {
+    Eigen::Vector3f normal;
+    Eigen::Vector3f diffuse;   // albedo
+    Eigen::Vector3f specular;  // reflectance along the normal
+    Eigen::Vector3f passed;    // share of what is not mirrored that goes through
+    float cover = 1;           // share that is there at all
+    float metallic = 0;
+    std::optional<float> exponent;  // of the lobe; nullopt: the part's own
+  };
+  FramePoint FrameAt(const SceneHit& hit) const;
   struct GlossRay {
     Eigen::Vector3f origin, direction;
     float cosine;  // between ray and normal
   };
-  std::optional<GlossRay> Gloss(const SceneHit& hit, const Eigen::Vector3f& point,
-                                const Eigen::Vector3f& direction) const;
+  static std::optional<GlossRay> Gloss(const FramePoint& at, const Eigen::Vector3f& point,
+                                       const Eigen::Vector3f& direction);
   bool GetsAway(const GlossRay& ray) const;
+  // How much of the frame is left at a point: temples fade toward the ears.
+  float FrameShare(const SceneHit& hit, const Eigen::Vector3f& point) const;
   // 1 at the front, 0 at the ears: how much of a temple beside this point is left.
   float TempleShare(const Eigen::Vector3f& point) const;
   Eigen::Vector3f Faded(const Eigen::Vector3f& ratio, const Eigen::Vector3f& point) const;

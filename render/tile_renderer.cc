@@ -188,25 +188,25 @@ void TileRenderer::Direct(std::size_t i, const Batch& batch, std::vector<CameraS
   SceneHit hit = batch.primary.hits[i];
   if (!hit.hit()) return;
   Eigen::Vector3f point = origin + hit.distance * direction;
-  float opacity = 0;
+  Eigen::Vector3f passed = Eigen::Vector3f::Ones();
   if (hit.object == SceneObject::kFrame) {
-    opacity = follower_.FrameOpacity(hit, point);
-    if (opacity > 0) {
+    passed = follower_.FramePasses(hit, point, direction);
+    if (passed.minCoeff() < 1) {
       sample.kind = CameraSample::Kind::kFrame;
       // One mirrored ray a pixel tells whether the gloss gets away.
       std::optional<bool>& gloss = pixels[sample.pixel].frame_gloss;
       if (!gloss) gloss = follower_.GlossGetsAway(hit, point, direction);
-      sample.inserted = opacity * follower_.Frame(hit, point, direction, gloss);
+      sample.inserted = follower_.Frame(hit, point, direction, gloss);
     }
-    if (opacity < 1) {
+    if (passed.maxCoeff() > 0) {
       hit = head_.scene.Intersect(RaySet::kHead, origin, direction, 0, kInfinity);
       point = origin + hit.distance * direction;
     }
   }
-  sample.direct.setConstant(1 - opacity);
-  if (opacity < 1 && hit.hit()) {
+  sample.direct = passed;
+  if (passed.maxCoeff() > 0 && hit.hit()) {
     if (sample.kind == CameraSample::Kind::kBackground) sample.kind = CameraSample::Kind::kHead;
-    sample.direct = (1 - opacity) * follower_.FaceRatio(hit, point, pixels[sample.pixel]);
+    sample.direct = passed.cwiseProduct(follower_.FaceRatio(hit, point, pixels[sample.pixel]));
   }
 }
 

@@ -1,0 +1,178 @@
+// SPDX-License-Identifier: Apache-2.0
+// The frame as a ray sees it: Phong (paper, section V-A), or metallic-roughness with textures where
+// its model brings them (glTF 2.0, appendix B: Schlick's Fresnel term over the mirrored share, the
+// rest diffuse, or let through).
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "base/units.h"
+#include "render/ray_follower.h"
+
+namespace lorgnette {
+namespace {
+
+constexpr float kInfinity = std::numeric_limits<float>::infinity();
+
+float SmoothStep(double x, double from, double to) {
+  const double s = std::clamp((x - from) / (to - from), 0.0, 1.0);
+  return float(s * s * (3 - 2 * s));
+}
+
+// Reflectance toward grazing (Schlick 1994).
+Eigen::Vector3f Schlick(const Eigen::Vector3f& along_normal, float cosine) {
+  const float off = 1 - cosine;
+  const float rise = off * off * off * off * off;
+  return along_normal + rise * (Eigen::Vector3f::Ones() - along_normal);
+}
+
+// The normal that a tangent-space texture asks for. v of the texture runs downwards, its y up.
+Eigen::Vector3f Bumped(const TriangleMesh& mesh, const Eigen::Vector3i& t,
+                       const Eigen::Vector2f& uv, const Eigen::Vector3f& normal,
+                       const PbrMaterial& material) {
+  const auto position = [&](int k) { return mesh.positions[std::size_t(t[k])].cast<float>(); };
+  const Eigen::Vector3f e1 = position(1) - position(0), e2 = position(2) - position(0);
+  const Eigen::Vector2f d1 = mesh.uvs[std::size_t(t[1])] - mesh.uvs[std::size_t(t[0])];
+  const Eigen::Vector2f d2 = mesh.uvs[std::size_t(t[2])] - mesh.uvs[std::size_t(t[0])];
+  const float area = d1.x() * d2.y() - d2.x() * d1.y();
+  if (std::abs(area) < 1e-12f) return normal;
+  Eigen::Vector3f along = (d2.y() * e1 - d1.y() * e2) / area;
+  along -= along.dot(normal) * normal;
+  if (along.squaredNorm() < 1e-12f) return normal;
+  along.normalize();
+  Eigen::Vector3f up = normal.cross(along);
+  const Eigen::Vector3f down = (d1.x() * e2 - d2.x() * e1) / area;
+  if (up.dot(down) > 0) up = -up;
+  const Eigen::Vector4f texel = SampleTexture(*material.normal_texture, uv);
+  const Eigen::Vector3f n = 2 * texel.head<3>() - Eigen::Vector3f::Ones();
+  return (material.normal_scale * (n.x() * along + n.y() * up) + n.z() * normal).normalized();
+}
+
+}  // namespace
+
+RayFollower::FramePoint RayFollower::FrameAt(const SceneHit& hit) const {
+  const FrameSurface& frame = head_.frame;
+  const FrameMaterial& material = frame.materials[frame.material_of[hit.triangle]];
+  const Eigen::Vector3i& t = frame.mesh.triangles[hit.triangle];
+  const float w[3] = {1 - hit.u - hit.v, hit.u, hit.v};
+  FramePoint at;
+  at.normal.setZero();
+  for (int k = 0; k < 3; ++k) {
+    at.normal += w[k] * frame.mesh.normals[std::size_t(t[k])].cast<float>();
+  }
+  at.normal.normalize();
+  at.diffuse = material.diffuse;
+  at.specular = material.specular;
+  at.passed.setZero();
+  if (material.pbr == nullptr) return at;
+  const PbrMaterial& pbr = *material.pbr;
+  Eigen::Vector2f uv = Eigen::Vector2f::Zero();
+  for (int k = 0; k < 3; ++k) uv += w[k] * frame.mesh.uvs[std::size_t(t[k])];
+  if (pbr.normal_texture) at.normal = Bumped(frame.mesh, t, uv, at.normal, pbr);
+  const PbrPoint point = EvaluatePbr(pbr, uv);
+  const float mirrored = std::pow((pbr.ior - 1) / (pbr.ior + 1), 2.0f);
+  at.metallic = std::clamp(point.metallic, 0.0f, 1.0f);
+  at.specular =
+      Eigen::Vector3f::Constant(mirrored * (1 - at.metallic)) + at.metallic * point.base_color;
+  at.diffuse = (1 - at.metallic) * (1 - point.transmission) * point.base_color;
+  at.passed = (1 - at.metallic) * point.transmission * point.base_color;
+  at.cover = std::clamp(point.alpha, 0.0f, 1.0f);
+  if (pbr.metallic_roughness_texture) at.exponent = LobeExponent(point.roughness);
+  return at;
+}
+
+std::vector<Eigen::Vector3f> RayFollower::FrameRadiance() const {
+  const FrameSurface& frame = head_.frame;
+  std::vector<Eigen::Vector3f> radiance;
+  for (std::size_t t = 0; t < frame.mesh.triangles.size(); ++t) {
+    const FrameMaterial& material = frame.materials[frame.material_of[t]];
+    for (int k = 0; k < 3; ++k) {
+      radiance.push_back(float(1 / kPi) *
+                         material.diffuse.cwiseProduct(
+                             frame_irradiance_[std::size_t(frame.mesh.triangles[t][k])]));
+    }
+  }
+  return radiance;
+}
+
+float RayFollower::FrameShare(const SceneHit& hit, const Eigen::Vector3f& point) const {
+  if (!head_.options.fade_temples || !head_.frame.fades[head_.frame.material_of[hit.triangle]]) {
+    return 1;
+  }
+  return TempleShare(point);
+}
+
+float RayFollower::TempleShare(const Eigen::Vector3f& point) const {
+  const float z = frame_z_.head<3>().dot(point) + frame_z_.w();
+  return 1 - SmoothStep(-double(z), -head_.frame.fade_start_z, -head_.frame.fade_end_z);
+}
+
+Eigen::Vector3f RayFollower::FramePasses(const SceneHit& hit, const Eigen::Vector3f& point,
+                                         const Eigen::Vector3f& direction) const {
+  const float share = FrameShare(hit, point);
+  if (head_.frame.materials[head_.frame.material_of[hit.triangle]].pbr == nullptr) {
+    return Eigen::Vector3f::Constant(1 - share);
+  }
+  const FramePoint at = FrameAt(hit);
+  const Eigen::Vector3f mirrored =
+      Schlick(at.specular, std::min(std::abs(at.normal.dot(direction)), 1.0f));
+  const Eigen::Vector3f through =
+      at.cover * (Eigen::Vector3f::Ones() - mirrored).cwiseProduct(at.passed);
+  return Eigen::Vector3f::Constant(1 - share * at.cover) + share * through;
+}
+
+std::optional<RayFollower::GlossRay> RayFollower::Gloss(const FramePoint& at,
+                                                        const Eigen::Vector3f& point,
+                                                        const Eigen::Vector3f& direction) {
+  if (at.specular.isZero()) return std::nullopt;
+  const float along = at.normal.dot(direction);
+  const Eigen::Vector3f mirrored = direction - 2 * along * at.normal;
+  if (!(mirrored.dot(at.normal) * along < 0)) return std::nullopt;
+  constexpr float kLift_mm = 0.1f;
+  return GlossRay{point - std::copysign(kLift_mm, along) * at.normal, mirrored,
+                  std::min(std::abs(along), 1.0f)};
+}
+
+bool RayFollower::GetsAway(const GlossRay& ray) const {
+  return !head_.scene.Occluded(RaySet::kAll, ray.origin, ray.direction, 0, kInfinity);
+}
+
+bool RayFollower::GlossGetsAway(const SceneHit& hit, const Eigen::Vector3f& point,
+                                const Eigen::Vector3f& direction) const {
+  const auto ray = Gloss(FrameAt(hit), point, direction);
+  return ray && GetsAway(*ray);
+}
+
+Eigen::Vector3f RayFollower::Frame(const SceneHit& hit, const Eigen::Vector3f& point,
+                                   const Eigen::Vector3f& direction,
+                                   std::optional<bool> gloss) const {
+  const float share = FrameShare(hit, point);
+  if (share == 0) return Eigen::Vector3f::Zero();
+  const FrameSurface& frame = head_.frame;
+  const std::uint16_t part = frame.material_of[hit.triangle];
+  const FramePoint at = FrameAt(hit);
+  const Eigen::Vector3i& t = frame.mesh.triangles[hit.triangle];
+  const float w[3] = {1 - hit.u - hit.v, hit.u, hit.v};
+  Eigen::Vector3f irradiance = Eigen::Vector3f::Zero();
+  for (int k = 0; k < 3; ++k) irradiance += w[k] * frame_irradiance_[std::size_t(t[k])];
+  Eigen::Vector3f colour = float(1 / kPi) * at.diffuse.cwiseProduct(irradiance);
+  // A metal has no colour but what it mirrors; what hides the sky from it is skin for the most.
+  const bool mirrors_skin = at.metallic > 0;
+  if (effects_.rest[Effect::kGloss] && (gloss != false || mirrors_skin)) {
+    if (const auto ray = Gloss(at, point, direction)) {
+      const Eigen::Vector3f strength = Schlick(at.specular, ray->cosine);
+      if (gloss ? *gloss : GetsAway(*ray)) {
+        const Eigen::Vector3f world = world_from_head_ * ray->direction;
+        colour +=
+            float(head_.options.environment_scale) *
+            strength.cwiseProduct(at.exponent ? frame.GlossAt(*at.exponent, world)
+                                              : frame.gloss[frame.gloss_of[part]].Radiance(world));
+      } else if (mirrors_skin) {
+        colour += at.metallic * strength.cwiseProduct(picture_.face_mean());
+      }
+    }
+  }
+  return share * at.cover * colour;
+}
+
+}  // namespace lorgnette
