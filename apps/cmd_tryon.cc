@@ -70,7 +70,13 @@ Status RunTryonCommand(TryonCommandOptions options, std::ostream& out) {
     return UsageError(fmt::format("--samples: got {}, want 1..{}", compositor.samples_per_side,
                                   kMaxSamplesPerSide));
   }
-  LG_ASSIGN(request.eyewear.medium, MediumFromOptions(options.medium, options.index, std::nullopt));
+  LensOptions lens;
+  lens.medium = options.medium;
+  lens.index = options.index;
+  LG_ASSIGN(const MediumEntry medium, MediumOf(lens));
+  request.eyewear.medium = medium.medium;
+  request.eyewear.min_center_thickness_mm = medium.min_center_mm;
+  request.eyewear.min_edge_thickness_mm = medium.min_edge_mm;
   if (!options.frame_finish.empty()) {
     LG_ASSIGN(request.frame_finish, FindFrameFinish(options.frame_finish));
   }

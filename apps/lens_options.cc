@@ -85,16 +85,6 @@ Status CheckPower(const LensOptions& o) {
   return {};
 }
 
-Result<Medium> MediumFromOptions(const std::string& name, std::optional<double> index,
-                                 std::optional<double> density_g_cm3) {
-  LensOptions options;
-  options.medium = name;
-  options.index = index;
-  options.density_g_cm3 = density_g_cm3;
-  LG_ASSIGN(const MediumEntry entry, MediumOf(options));
-  return entry.medium;
-}
-
 Result<MediumEntry> MediumOf(const LensOptions& o) {
   if (o.index && o.index_e) {
     return UsageError("--index-e: got it together with --index, want the index at one line");

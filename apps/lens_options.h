@@ -66,10 +66,6 @@ Status CheckPower(const LensOptions& options);
 
 // The medium and how thin labs make it, with what was given in place of its own.
 Result<MediumEntry> MediumOf(const LensOptions& options);
-// By name, with the index and the density given in place of its own.
-Result<Medium> MediumFromOptions(const std::string& name, std::optional<double> index,
-                                 std::optional<double> density_g_cm3);
-
 // Options that concern how a lens is made and worn, whatever its power.
 void AddMakingOptions(CLI::App& command, LensOptions& options);
 // Sphere, cylinder, axis, prism, addition.
