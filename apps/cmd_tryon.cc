@@ -132,6 +132,10 @@ void AddTryonCommand(CLI::App& program, CommandContext& context) {
       ->check(CLI::Range(0, 1000));
   command.add_flag("--beside", request.stills_beside_input, "Stills show the input at the left");
   command.add_option("--report", request.report, "Write a report (JSON)");
+  command.add_flag(
+      "--resume", request.resume,
+      "Keep what is drawn in OUTPUT.resume until the output is whole; the same command "
+      "after a kill goes on from there, with the same result");
   AddEffectOptions(command, options->effects);
   command.add_option("--oma", request.oma,
                      "Write the lenses' results for a lab (OMA): into a copy of the frame's or the "
@@ -183,8 +187,10 @@ void AddTryonCommand(CLI::App& program, CommandContext& context) {
       "  lorgnette tryon --video clip.mp4 --rx rx.json --frame round --env studio.exr \\\n"
       "      --frames 100:199 --stills 4 --report report.json -o part.mp4\n"
       "  lorgnette tryon --video portrait.png --rx rx.json --frame aviator -o portrait_on.png");
-  command.final_callback(
-      [options, &context] { context.status = RunTryonCommand(*options, context.out); });
+  command.final_callback([options, &context] {
+    options->request.command_line = context.command_line;
+    context.status = RunTryonCommand(*options, context.out);
+  });
 }
 
 }  // namespace lorgnette

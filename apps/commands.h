@@ -3,6 +3,7 @@
 #pragma once
 
 #include <iosfwd>
+#include <string>
 
 #include "base/result.h"
 
@@ -16,6 +17,7 @@ namespace lorgnette {
 struct CommandContext {
   std::ostream& out;
   Status status;
+  std::string command_line;  // the arguments, one a line
 };
 
 void AddTryonCommand(CLI::App& program, CommandContext& context);

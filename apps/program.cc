@@ -39,7 +39,8 @@ int RunProgram(int argc, const char* const* argv, std::ostream& out, std::ostrea
       "`lorgnette COMMAND --help` explains a command, with examples.\n"
       "Exit codes: 0 done, 1 it failed, 2 the request cannot be meant.");
 
-  CommandContext context{out, {}};
+  CommandContext context{out, {}, {}};
+  for (int i = 1; i < argc; ++i) context.command_line += std::string(argv[i]) + '\n';
   AddTryonCommand(program, context);
   AddTrackCommand(program, context);
   AddCalibrateCommand(program, context);

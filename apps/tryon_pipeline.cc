@@ -13,6 +13,8 @@
 
 #include "apps/camera_choice.h"
 #include "apps/oma_export.h"
+#include "apps/program.h"
+#include "apps/render_journal.h"
 #include "apps/rx_file.h"
 #include "apps/still_choice.h"
 #include "apps/track_pipeline.h"
@@ -162,6 +164,21 @@ Result<HeadTrack> GetTrack(const TryonRequest& request, const VideoInfo& video,
   return track;
 }
 
+// What a render is of: the command, the program, and all that it reads.
+std::uint64_t KeyOf(const TryonRequest& request, const HeadTrack& track) {
+  std::uint64_t key = HashOf(std::string(ProgramVersion()) + '\n' + request.command_line);
+  for (const std::string& path :
+       {request.video, request.rx, request.frame, request.environment, request.camera}) {
+    if (!path.empty()) key = HashOfFile(path, key);
+  }
+  for (const TrackedFrame& frame : track.frames) {
+    for (const double v : frame.camera_from_head.matrix().reshaped()) {
+      key = HashOf(fmt::format("{:.17g} ", v), key);
+    }
+  }
+  return key;
+}
+
 void SummarizePoses(const HeadTrack& track, TryonResult& result) {
   bool any = false;
   double squares = 0;
@@ -201,7 +218,8 @@ struct Job {
 class Assembly {
  public:
   Assembly(const TryonRequest& request, VideoReader& reader, VideoWriter& writer,
-           Compositor& compositor, const HeadTrack& track, TryonResult& result)
+           Compositor& compositor, const HeadTrack& track, TryonResult& result,
+           RenderJournal* journal)
       : request_(request),
         reader_(reader),
         writer_(writer),
@@ -210,6 +228,7 @@ class Assembly {
         lookup_(track, reader.info().frame_rate),
         chosen_(ChooseStills(track, request.stills)),
         result_(result),
+        journal_(journal),
         rectifier_(RectifierFor(track.camera, track.distortion)),
         progress_("rendering", "frames", static_cast<long>(track.frames.size())) {}
 
@@ -280,23 +299,41 @@ class Assembly {
       compositor_.SetCameraLook(MeasureCameraLook(LinearFromDisplay(seen)));
       exposed_ = true;
     }
+    const long number = job.tracked - track_.frames.data();
+    // The first plan is reported: that frame is always drawn.
+    if (journal_ != nullptr && !result_.first_plan.decisions.empty()) {
+      if (const auto tally = journal_->Restore(number, job.frame.rgb)) {
+        Count(*tally);
+        return;
+      }
+    }
     EffectPlan plan;
-    RenderCounts counts;
+    FrameTally tally;
     ImageRgb8 drawn = compositor_.Render(seen, track_.camera, job.tracked->camera_from_head,
-                                         request_.effects, plan, &counts);
-    CountEffects(plan);
-    result_.counts.lens_pixels += counts.lens_pixels;
-    result_.counts.frame_pixels += counts.frame_pixels;
-    result_.counts.shadowed_pixels += counts.shadowed_pixels;
-    result_.counts.filled_samples += counts.filled_samples;
-    job.frame.rgb =
-        rectifier_ ? rectifier_->WithChanges(job.frame.rgb, rectified, drawn) : std::move(drawn);
-  }
-
-  void CountEffects(const EffectPlan& plan) {
+                                         request_.effects, plan, &tally.counts);
     if (result_.first_plan.decisions.empty()) result_.first_plan = plan;
     for (const EffectDecision& d : plan.decisions) {
-      result_.effect_frames[std::size_t(d.region)][std::size_t(d.effect)] += d.on;
+      tally.effects[std::size_t(d.region)] |= std::uint32_t(d.on) << unsigned(d.effect);
+    }
+    Count(tally);
+    if (rectifier_) drawn = rectifier_->WithChanges(job.frame.rgb, rectified, drawn);
+    if (journal_ != nullptr) {
+      if (const Status kept = journal_->Keep(number, job.frame.rgb, drawn, tally); !kept) {
+        Fail(kept.error());
+      }
+    }
+    job.frame.rgb = std::move(drawn);
+  }
+
+  void Count(const FrameTally& tally) {
+    result_.counts.lens_pixels += tally.counts.lens_pixels;
+    result_.counts.frame_pixels += tally.counts.frame_pixels;
+    result_.counts.shadowed_pixels += tally.counts.shadowed_pixels;
+    result_.counts.filled_samples += tally.counts.filled_samples;
+    for (std::size_t region = 0; region < tally.effects.size(); ++region) {
+      for (std::size_t effect = 0; effect < kEffectCount; ++effect) {
+        result_.effect_frames[region][effect] += (tally.effects[region] >> effect) & 1u;
+      }
     }
   }
 
@@ -340,6 +377,7 @@ class Assembly {
   TrackLookup lookup_;
   std::vector<long> chosen_;
   TryonResult& result_;
+  RenderJournal* journal_;  // null: none
   std::optional<PictureRectifier> rectifier_;
   Progress progress_;
   long number_ = 0;
@@ -427,9 +465,14 @@ Result<TryonResult> RunTryon(const TryonRequest& request) {
                               request.compositor);
   };
   LG_ASSIGN(Compositor compositor, prepare());
+  std::optional<RenderJournal> journal;
+  if (request.resume) {
+    LG_ASSIGN(journal, RenderJournal::Open(request.output + ".resume", KeyOf(request, track)));
+  }
   std::vector<std::pair<std::string, ImageRgb8>> stills;
   {
-    Assembly assembly(request, reader, writer, compositor, track, result);
+    Assembly assembly(request, reader, writer, compositor, track, result,
+                      journal ? &*journal : nullptr);
     LG_RETURN_IF_ERROR(assembly.Run());
     stills = std::move(assembly.stills());
   }
@@ -441,6 +484,7 @@ Result<TryonResult> RunTryon(const TryonRequest& request) {
       result.stills.push_back(name);
     }
   }
+  if (journal) journal->Remove();
   seconds.wall = std::chrono::duration<double>(Clock::now() - start).count();
   if (!request.oma.empty()) LG_RETURN_IF_ERROR(WriteOmaJob(result));
   if (!request.report.empty()) {

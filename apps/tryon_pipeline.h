@@ -26,6 +26,9 @@ struct TryonRequest {
   std::string track;        // track file; empty: the video is tracked
   std::string report;       // empty: none
   std::string oma;          // lens results for the lab; empty: none
+  // Keeps what was drawn beside the output, and continues from what an earlier run kept.
+  bool resume = false;
+  std::string command_line;                    // tells this run from others, for `resume`
   std::optional<double> frame_unit_mm;         // of a frame file that does not say
   std::optional<FrameFinish> frame_finish;     // in place of the frame's own
   std::optional<Eigen::Vector3f> frame_color;  // linear Rec.709, in place of the frame's own

@@ -6,6 +6,8 @@
 
 #include <atomic>
 #include <cerrno>
+#include <charconv>
+#include <csignal>
 #include <cstring>
 #include <filesystem>
 #include <fstream>
@@ -15,12 +17,35 @@
 namespace lorgnette {
 namespace {
 
+// What all the temporary names of a file begin with; the number of a process follows.
+std::string TemporaryStart(const std::filesystem::path& path) {
+  return "." + path.stem().string() + ".partial-";
+}
+
 std::string TemporaryName(const std::string& final_path) {
   static std::atomic<int> counter{0};
   const std::filesystem::path path(final_path);
-  const std::string name = "." + path.stem().string() + ".partial-" + std::to_string(getpid()) +
-                           "-" + std::to_string(counter++) + path.extension().string();
+  const std::string name = TemporaryStart(path) + std::to_string(getpid()) + "-" +
+                           std::to_string(counter++) + path.extension().string();
   return (path.parent_path() / name).string();
+}
+
+// Removes what killed processes left of their work on this file.
+void RemoveLeftovers(const std::string& final_path) {
+  const std::filesystem::path path(final_path);
+  const std::string start = TemporaryStart(path);
+  std::error_code failed;
+  const std::filesystem::path folder = path.has_parent_path() ? path.parent_path() : ".";
+  for (std::filesystem::directory_iterator at(folder, failed), end; !failed && at != end;
+       at.increment(failed)) {
+    const std::string name = at->path().filename().string();
+    if (!name.starts_with(start) || at->path().extension() != path.extension()) continue;
+    long process = 0;
+    const char* digits = name.c_str() + start.size();
+    const auto read = std::from_chars(digits, name.c_str() + name.size(), process);
+    if (read.ec != std::errc() || *read.ptr != '-' || process <= 0) continue;
+    if (::kill(pid_t(process), 0) != 0 && errno == ESRCH) ::unlink(at->path().c_str());
+  }
 }
 
 std::string Reason() { return std::strerror(errno); }
@@ -28,7 +53,9 @@ std::string Reason() { return std::strerror(errno); }
 }  // namespace
 
 AtomicFile::AtomicFile(std::string final_path)
-    : final_path_(std::move(final_path)), temporary_path_(TemporaryName(final_path_)) {}
+    : final_path_(std::move(final_path)), temporary_path_(TemporaryName(final_path_)) {
+  RemoveLeftovers(final_path_);
+}
 
 AtomicFile::~AtomicFile() {
   if (!committed_) ::unlink(temporary_path_.c_str());

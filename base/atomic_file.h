@@ -10,7 +10,8 @@
 namespace lorgnette {
 
 // A name beside `final_path`, on the same file system, for writing what Commit() then renames.
-// The destructor removes the temporary file if it was not committed.
+// The destructor removes the temporary file if it was not committed; what killed processes left of
+// theirs for the same name goes with the next one.
 class AtomicFile {
  public:
   explicit AtomicFile(std::string final_path);

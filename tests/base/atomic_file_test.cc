@@ -58,6 +58,18 @@ TEST_F(AtomicFileTest, TwoWritersOfOneNameDoNotMeet) {
   EXPECT_NE(one.temporary_path(), two.temporary_path());
 }
 
+TEST_F(AtomicFileTest, ClearsUpAfterKilledProcesses) {
+  // No process has the greatest number.
+  const std::string left = Path(".a.partial-2147483647-0.json");
+  const std::string living = Path(".a.partial-" + std::to_string(getpid()) + "-99.json");
+  const std::string other = Path(".b.partial-2147483647-0.json");
+  for (const std::string& path : {left, living, other}) std::ofstream(path) << "half";
+  const AtomicFile file(Path("a.json"));
+  EXPECT_FALSE(std::filesystem::exists(left));
+  EXPECT_TRUE(std::filesystem::exists(living));
+  EXPECT_TRUE(std::filesystem::exists(other));
+}
+
 TEST_F(AtomicFileTest, LeavesNothingWithoutCommit) {
   ASSERT_TRUE(WriteFileAtomically(Path("f"), "kept").has_value());
   {
