@@ -402,6 +402,7 @@ RenderCounts Compositor::Draw(const Sitting& sitting, const PictureEffects& effe
     for (const CameraSample& s : samples) {
       const std::uint32_t x = std::uint32_t(s.x), y = std::uint32_t(s.y);
       states[s.pixel].seed = y * 7919u + x * 104729u;
+      states[s.pixel].side = std::uint8_t(here);
     }
     renderer.Trace(samples, content, states);
     sums.assign(states.size(), PixelSum{});

@@ -94,6 +94,21 @@ Eigen::Vector3f SampleSharp(const InputPicture& image, float x, float y) {
   return sum.cwiseMax(0.0f);
 }
 
+Eigen::Vector3f SampleMean(const InputPicture& image, float x, float y, float side_px) {
+  constexpr float kSharpUpTo_px = 1.25f;
+  constexpr int kMostTaps = 6;
+  if (!(side_px > kSharpUpTo_px)) return SampleSharp(image, x, y);
+  const int n = std::min(kMostTaps, int(std::ceil(side_px)));
+  Eigen::Vector3f sum = Eigen::Vector3f::Zero();
+  for (int j = 0; j < n; ++j) {
+    for (int i = 0; i < n; ++i) {
+      sum += SampleBilinear(image, x + side_px * ((float(i) + 0.5f) / float(n) - 0.5f),
+                            y + side_px * ((float(j) + 0.5f) / float(n) - 0.5f));
+    }
+  }
+  return sum / float(n * n);
+}
+
 // Push and pull (Gortler et al. 1996): means of the known pixels go up a pyramid, and come down
 // into the holes.
 FilledPicture::FilledPicture(const InputPicture& input, const std::vector<std::uint8_t>& known) {

@@ -80,7 +80,7 @@ Eigen::Vector3f PictureView::Head(const SceneHit& hit, const Eigen::Vector3f& po
 }
 
 bool PictureView::Background(const Eigen::Vector3f& origin, const Eigen::Vector3f& direction,
-                             Eigen::Vector3f& colour, long& filled) const {
+                             float footprint_px, Eigen::Vector3f& colour, long& filled) const {
   const Eigen::Vector3f o = rotation_ * origin + translation_;
   const Eigen::Vector3f d = rotation_ * direction;
   if (d.z() <= 1e-6f) return false;
@@ -93,7 +93,7 @@ bool PictureView::Background(const Eigen::Vector3f& origin, const Eigen::Vector3
   const Eigen::Vector3f sight = point - eye_;
   const float distance = sight.norm();
   if (InsidePicture(p) && !scene_.Occluded(RaySet::kHead, eye_, sight / distance, 0, distance)) {
-    colour = SampleSharp(input_, p.x(), p.y());
+    colour = SampleMean(input_, p.x(), p.y(), footprint_px);
     return true;
   }
   Once(background_once_, [&] { FillBackground(); });

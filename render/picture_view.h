@@ -20,6 +20,9 @@ namespace lorgnette {
 // Clamped at the border and at 0. Magnified eyes stay crisp.
 Eigen::Vector3f SampleSharp(const InputPicture& image, float x, float y);
 Eigen::Vector3f SampleBilinear(const InputPicture& image, float x, float y);
+// Mean over a square about a position: SampleSharp where it is no larger than a pixel, so that what
+// a minus lens makes small does not alias.
+Eigen::Vector3f SampleMean(const InputPicture& image, float x, float y, float side_px);
 
 // The input reduced by kFillStep, with holes (and all around) filled from their borders.
 class FilledPicture {
@@ -54,8 +57,9 @@ class PictureView {
   // Colour of the head where a refracted ray met it. `filled` counts what the camera never saw.
   Eigen::Vector3f Head(const SceneHit& hit, const Eigen::Vector3f& point, long& filled) const;
   // Colour of the background along a ray in head space; false when it does not meet the plane.
+  //   footprint_px  side of the square of the picture that the sample stands for
   bool Background(const Eigen::Vector3f& origin, const Eigen::Vector3f& direction,
-                  Eigen::Vector3f& colour, long& filled) const;
+                  float footprint_px, Eigen::Vector3f& colour, long& filled) const;
   // Colour of the face's vertices: as seen, or spread from where it was.
   const std::vector<Eigen::Vector3f>& vertex_colours() const;
   float background_depth() const { return background_depth_; }

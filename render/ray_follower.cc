@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "render/ray_follower.h"
 
+#include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -18,6 +19,23 @@ constexpr float kInfinity = std::numeric_limits<float>::infinity();
 
 Ray Transformed(const Eigen::Isometry3d& to_from, const Ray& ray) {
   return {to_from * ray.origin, to_from.linear() * ray.direction};
+}
+
+// Thin lens of power F, camera L before it, background d behind it: the picture of the background
+// shrinks by 1 - F d L / (d + L).
+float Minification(const LensSolid& lens, const Eigen::Isometry3d& camera_from_head,
+                   float background_depth_mm) {
+  const double to_camera = (camera_from_head * lens.head_from_lens().translation()).z();
+  const double behind = double(background_depth_mm) - to_camera;
+  if (!(to_camera > 1) || !(behind > 1)) return 1;
+  const Eigen::Vector2d power =
+      Eigen::SelfAdjointEigenSolver<Eigen::Matrix2d>(
+          (lens.lens().medium.index_d - 1) *
+              (lens.lens().front.VertexCurvature() - lens.lens().back.VertexCurvature()),
+          Eigen::EigenvaluesOnly)
+          .eigenvalues();
+  const double reach = behind * to_camera / (behind + to_camera);
+  return float((1 - reach * power.array()).abs().maxCoeff());
 }
 
 // Whether the pictures of the two lenses touch, with room for what refraction adds.
@@ -61,6 +79,9 @@ RayFollower::RayFollower(const HeadScene& head, const PictureView& picture, cons
     looks_.push_back(head.looks[i]);
     if (!effects.lens[i][Effect::kCoating]) looks_.back().front = looks_.back().back = {};
     if (!effects.lens[i][Effect::kTint]) looks_.back().tint = {};
+  }
+  for (const LensSolid& lens : head.lenses) {
+    minification_.push_back(Minification(lens, camera_from_head, picture.background_depth()));
   }
   frame_z_ = head.frame.frame_from_head.matrix().row(2).cast<float>();
   const HeadLight light =
@@ -136,7 +157,10 @@ Eigen::Vector3f RayFollower::Head(const SceneHit& hit, const Eigen::Vector3f& po
 Eigen::Vector3f RayFollower::Miss(const Eigen::Vector3f& origin, const Eigen::Vector3f& direction,
                                   bool transmitted, PixelState& pixel) const {
   Eigen::Vector3f colour;
-  if (transmitted && picture_.Background(origin, direction, colour, pixel.filled)) return colour;
+  const float footprint = pixel.minification / float(pixel.side);
+  if (transmitted && picture_.Background(origin, direction, footprint, colour, pixel.filled)) {
+    return colour;
+  }
   return EnvironmentLight(direction);
 }
 
@@ -202,6 +226,7 @@ Eigen::Vector3f RayFollower::EnterGlass(std::size_t lens, const Ray& ray, const 
                                         double weight, int bounces, PixelState& pixel) const {
   const LensSolid& solid = head_.lenses[lens];
   const EffectSet& on = effects_.lens[lens];
+  pixel.minification = minification_[lens];
   const double cosine = std::min(-hit.normal.dot(ray.direction), 1.0);
   const double index = index_[pixel.band][lens];
   Split split = AtSurface(lens, hit.face, FresnelReflectance(cosine, 1 / index), cosine,

@@ -19,6 +19,9 @@ namespace lorgnette {
 struct PixelState {
   std::uint8_t band = 0;   // 0: the light has the media's own index (d line); k: ColourBands()[k-1]
   std::uint32_t seed = 0;  // of the paper's strata
+  std::uint8_t side = 1;   // samples along each side of the pixel
+  // The lens that the pixel's rays enter: how much smaller it shows the background.
+  float minification = 1;
   long filled = 0;
   // Paper mode shades one point a pixel; nullopt until a ray of the pixel met the face.
   std::optional<Eigen::Vector3f> face_ratio;
@@ -38,6 +41,8 @@ class RayFollower {
   const std::vector<ColourBand>& bands() const { return bands_; }
   // Dispersion of the lens is drawn where it moves a colour by more than this, in pixels.
   double dispersion_from_px(std::size_t lens) const { return effects_.dispersion_from_px[lens]; }
+  // How many times smaller than beside it a lens shows the background, on its axis.
+  float minification(std::size_t lens) const { return minification_[lens]; }
   // Coats and tint of a lens as they are drawn.
   const LensLook& look(std::size_t lens) const { return looks_[lens]; }
 
@@ -136,6 +141,7 @@ class RayFollower {
   Eigen::Matrix3f world_from_head_;
   Eigen::Vector4f frame_z_{0, 0, 0, 0};  // of a point in head space (x, y, z, 1)
   bool lenses_overlap_ = false;
+  std::vector<float> minification_;  // one a lens
   const PictureView& picture_;
   std::vector<Eigen::Vector3f> ratios_;            // one a baked point
   std::vector<Eigen::Vector3f> frame_irradiance_;  // one a vertex

@@ -574,6 +574,7 @@ void TileRenderer::TraceLens(std::size_t lens, Batch& batch, std::vector<CameraS
     const Regular& r = batch.regular[k];
     CameraSample& sample = samples[r.sample];
     const SceneHit& hit = batch.main.hits[j];
+    pixels[sample.pixel].minification = follower_.minification(lens);
     sample.kind = hit.object == SceneObject::kFace ? CameraSample::Kind::kLensToHead
                   : hit.hit()                      ? CameraSample::Kind::kLensElsewhere
                                                    : CameraSample::Kind::kLensToBackground;
