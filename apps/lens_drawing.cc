@@ -61,7 +61,7 @@ class LensRow {
   void Draw() {
     svg_.Text(
         {24, top_ + 24},
-        fmt::format("{}   {}   {}, n {:.4g}", order_.eye == Eye::kRight ? "OD right" : "OS left",
+        fmt::format("{} · {} · {}, n {:.4g}", order_.eye == Eye::kRight ? "OD right" : "OS left",
                     PowerText(column_.made->written), order_.medium.name, order_.medium.index_d),
         Anchor::kStart, "title");
     DrawFront();
