@@ -101,6 +101,8 @@ std::string GroundTruthFolder() {
   return own != nullptr ? own : LORGNETTE_SOURCE_DIR "/../shared/data/groundtruth";
 }
 
+std::string OwnGroundTruthFolder() { return LORGNETTE_SOURCE_DIR "/cache/groundtruth"; }
+
 Result<GroundTruth> ReadGroundTruth(const std::string& case_file) {
   LG_ASSIGN(ComposeCase scene, ReadComposeCase(case_file));
   GroundTruth truth{std::move(scene), 0, 0, {}, {}, {}, 0, 0, 0};
@@ -158,11 +160,13 @@ RegionScore ScoreRegion(const GroundTruth& truth, const ImageRgbF& picture, Regi
   return score;
 }
 
-void CheckGroundTruth(CaseRun& run, const std::string& name) {
-  const std::string file = GroundTruthFolder() + "/" + name + "/case.json";
+void CheckGroundTruth(CaseRun& run, const std::string& name, const std::string& folder) {
+  const std::string file = folder + "/" + name + "/case.json";
   std::error_code ec;
   if (!fs::exists(file, ec)) {
-    run.Skip("no path-traced set " + name + " on this machine ($LORGNETTE_GROUNDTRUTH)");
+    run.Skip(folder == OwnGroundTruthFolder()
+                 ? "no " + name + " on this machine; scripts/make-groundtruth makes it"
+                 : "no path-traced set " + name + " on this machine ($LORGNETTE_GROUNDTRUTH)");
     return;
   }
   auto truth = ReadGroundTruth(file);

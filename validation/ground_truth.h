@@ -16,6 +16,8 @@ namespace lorgnette::validation {
 
 // $LORGNETTE_GROUNDTRUTH, else shared/data/groundtruth beside the folder this was built from.
 std::string GroundTruthFolder();
+// Where scripts/make-groundtruth leaves the project's own set.
+std::string OwnGroundTruthFolder();
 
 // One case of a set: the scene, and what was traced inside a crop of the picture.
 struct GroundTruth {
@@ -42,6 +44,7 @@ RegionScore ScoreRegion(const GroundTruth& truth, const ImageRgbF& picture, Regi
 
 // A case of the validation suite on one set: renders, compares by noise, and shows that leaving an
 // effect out scores worse. Skips where the set is absent.
-void CheckGroundTruth(CaseRun& run, const std::string& name);
+void CheckGroundTruth(CaseRun& run, const std::string& name,
+                      const std::string& folder = GroundTruthFolder());
 
 }  // namespace lorgnette::validation
