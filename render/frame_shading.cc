@@ -71,11 +71,10 @@ RayFollower::FramePoint RayFollower::FrameAt(const SceneHit& hit) const {
   if (pbr.normal_texture) at.normal = Bumped(frame.mesh, t, uv, at.normal, pbr);
   const PbrPoint point = EvaluatePbr(pbr, uv);
   const float mirrored = std::pow((pbr.ior - 1) / (pbr.ior + 1), 2.0f);
-  at.metallic = std::clamp(point.metallic, 0.0f, 1.0f);
-  at.specular =
-      Eigen::Vector3f::Constant(mirrored * (1 - at.metallic)) + at.metallic * point.base_color;
-  at.diffuse = (1 - at.metallic) * (1 - point.transmission) * point.base_color;
-  at.passed = (1 - at.metallic) * point.transmission * point.base_color;
+  const float metallic = std::clamp(point.metallic, 0.0f, 1.0f);
+  at.specular = Eigen::Vector3f::Constant(mirrored * (1 - metallic)) + metallic * point.base_color;
+  at.diffuse = (1 - metallic) * (1 - point.transmission) * point.base_color;
+  at.passed = (1 - metallic) * point.transmission * point.base_color;
   at.cover = std::clamp(point.alpha, 0.0f, 1.0f);
   if (pbr.metallic_roughness_texture) at.exponent = LobeExponent(point.roughness);
   return at;
@@ -133,19 +132,29 @@ std::optional<RayFollower::GlossRay> RayFollower::Gloss(const FramePoint& at,
                   std::min(std::abs(along), 1.0f)};
 }
 
-bool RayFollower::GetsAway(const GlossRay& ray) const {
-  return !head_.scene.Occluded(RaySet::kAll, ray.origin, ray.direction, 0, kInfinity);
+GlossEnd RayFollower::EndOf(const GlossRay& ray) const {
+  // Smooth normals mirror rays into the flat triangles beside them.
+  constexpr float kOwnTriangles_mm = 2;
+  const SceneHit hit =
+      head_.scene.Intersect(RaySet::kAll, ray.origin, ray.direction, kOwnTriangles_mm, kInfinity);
+  if (!hit.hit()) return {true, Eigen::Vector3f::Zero()};
+  if (hit.object == SceneObject::kFrame) return {};
+  if (hit.object != SceneObject::kFace) return {false, picture_.face_mean()};
+  const Eigen::Vector3i& t = head_.face_triangles[hit.triangle];
+  const std::vector<Eigen::Vector3f>& skin = picture_.vertex_colours();
+  return {false, (1 - hit.u - hit.v) * skin[std::size_t(t[0])] + hit.u * skin[std::size_t(t[1])] +
+                     hit.v * skin[std::size_t(t[2])]};
 }
 
-bool RayFollower::GlossGetsAway(const SceneHit& hit, const Eigen::Vector3f& point,
-                                const Eigen::Vector3f& direction) const {
+GlossEnd RayFollower::GlossOf(const SceneHit& hit, const Eigen::Vector3f& point,
+                              const Eigen::Vector3f& direction) const {
   const auto ray = Gloss(FrameAt(hit), point, direction);
-  return ray && GetsAway(*ray);
+  return ray ? EndOf(*ray) : GlossEnd{};
 }
 
 Eigen::Vector3f RayFollower::Frame(const SceneHit& hit, const Eigen::Vector3f& point,
                                    const Eigen::Vector3f& direction,
-                                   std::optional<bool> gloss) const {
+                                   const std::optional<GlossEnd>& gloss) const {
   const float share = FrameShare(hit, point);
   if (share == 0) return Eigen::Vector3f::Zero();
   const FrameSurface& frame = head_.frame;
@@ -156,20 +165,17 @@ Eigen::Vector3f RayFollower::Frame(const SceneHit& hit, const Eigen::Vector3f& p
   Eigen::Vector3f irradiance = Eigen::Vector3f::Zero();
   for (int k = 0; k < 3; ++k) irradiance += w[k] * frame_irradiance_[std::size_t(t[k])];
   Eigen::Vector3f colour = float(1 / kPi) * at.diffuse.cwiseProduct(irradiance);
-  // A metal has no colour but what it mirrors; what hides the sky from it is skin for the most.
-  const bool mirrors_skin = at.metallic > 0;
-  if (effects_.rest[Effect::kGloss] && (gloss != false || mirrors_skin)) {
+  if (effects_.rest[Effect::kGloss]) {
     if (const auto ray = Gloss(at, point, direction)) {
-      const Eigen::Vector3f strength = Schlick(at.specular, ray->cosine);
-      if (gloss ? *gloss : GetsAway(*ray)) {
+      const GlossEnd end = gloss ? *gloss : EndOf(*ray);
+      Eigen::Vector3f mirrored = end.radiance;
+      if (end.away) {
         const Eigen::Vector3f world = world_from_head_ * ray->direction;
-        colour +=
-            float(head_.options.environment_scale) *
-            strength.cwiseProduct(at.exponent ? frame.GlossAt(*at.exponent, world)
-                                              : frame.gloss[frame.gloss_of[part]].Radiance(world));
-      } else if (mirrors_skin) {
-        colour += at.metallic * strength.cwiseProduct(picture_.face_mean());
+        mirrored = float(head_.options.environment_scale) *
+                   (at.exponent ? frame.GlossAt(*at.exponent, world)
+                                : frame.gloss[frame.gloss_of[part]].Radiance(world));
       }
+      colour += Schlick(at.specular, ray->cosine).cwiseProduct(mirrored);
     }
   }
   return share * at.cover * colour;

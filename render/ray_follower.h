@@ -15,6 +15,12 @@
 
 namespace lorgnette {
 
+// Where a ray that the frame mirrors ends: nowhere, or on something of this radiance.
+struct GlossEnd {
+  bool away = false;
+  Eigen::Vector3f radiance{0, 0, 0};  // of skin; black where the frame hides itself
+};
+
 // What one pixel's rays share.
 struct PixelState {
   std::uint8_t band = 0;   // 0: the light has the media's own index (d line); k: ColourBands()[k-1]
@@ -25,8 +31,8 @@ struct PixelState {
   long filled = 0;
   // Paper mode shades one point a pixel; nullopt until a ray of the pixel met the face.
   std::optional<Eigen::Vector3f> face_ratio;
-  // Whether the mirrored ray of the frame, seen directly, gets away; nullopt until one was traced.
-  std::optional<bool> frame_gloss;
+  // Where the mirrored ray of the frame, seen directly, ends; nullopt until one was traced.
+  std::optional<GlossEnd> frame_gloss;
 };
 
 class RayFollower {
@@ -79,16 +85,15 @@ class RayFollower {
 
   Eigen::Vector3f EnvironmentLight(const Eigen::Vector3f& direction) const;
   // Light of the frame toward -direction, with the temples' feathering (render/frame_shading.cc).
-  //   gloss  GlossGetsAway, where it is known
+  //   gloss  GlossOf, where it is known
   Eigen::Vector3f Frame(const SceneHit& hit, const Eigen::Vector3f& point,
                         const Eigen::Vector3f& direction,
-                        std::optional<bool> gloss = std::nullopt) const;
+                        const std::optional<GlossEnd>& gloss = std::nullopt) const;
   // Share of the light behind the frame that comes through to -direction: 0 where it is opaque.
   Eigen::Vector3f FramePasses(const SceneHit& hit, const Eigen::Vector3f& point,
                               const Eigen::Vector3f& direction) const;
-  // Whether the frame's mirrored ray meets neither frame nor head.
-  bool GlossGetsAway(const SceneHit& hit, const Eigen::Vector3f& point,
-                     const Eigen::Vector3f& direction) const;
+  GlossEnd GlossOf(const SceneHit& hit, const Eigen::Vector3f& point,
+                   const Eigen::Vector3f& direction) const;
   // The edge wall as EdgeFinish::kGround.
   Eigen::Vector3f GroundEdge() const;
   // Radiance of the frame's triangles at their corners, without highlights.
@@ -109,11 +114,10 @@ class RayFollower {
   // The frame's surface at a hit.
   struct FramePoint {
     Eigen::Vector3f normal;
-    Eigen::Vector3f diffuse;   // albedo
-    Eigen::Vector3f specular;  // reflectance along the normal
-    Eigen::Vector3f passed;    // share of what is not mirrored that goes through
-    float cover = 1;           // share that is there at all
-    float metallic = 0;
+    Eigen::Vector3f diffuse;        // albedo
+    Eigen::Vector3f specular;       // reflectance along the normal
+    Eigen::Vector3f passed;         // share of what is not mirrored that goes through
+    float cover = 1;                // share that is there at all
     std::optional<float> exponent;  // of the lobe; nullopt: the part's own
   };
   FramePoint FrameAt(const SceneHit& hit) const;
@@ -123,7 +127,7 @@ class RayFollower {
   };
   static std::optional<GlossRay> Gloss(const FramePoint& at, const Eigen::Vector3f& point,
                                        const Eigen::Vector3f& direction);
-  bool GetsAway(const GlossRay& ray) const;
+  GlossEnd EndOf(const GlossRay& ray) const;
   // How much of the frame is left at a point: temples fade toward the ears.
   float FrameShare(const SceneHit& hit, const Eigen::Vector3f& point) const;
   // 1 at the front, 0 at the ears: how much of a temple beside this point is left.

@@ -193,9 +193,9 @@ void TileRenderer::Direct(std::size_t i, const Batch& batch, std::vector<CameraS
     passed = follower_.FramePasses(hit, point, direction);
     if (passed.minCoeff() < 1) {
       sample.kind = CameraSample::Kind::kFrame;
-      // One mirrored ray a pixel tells whether the gloss gets away.
-      std::optional<bool>& gloss = pixels[sample.pixel].frame_gloss;
-      if (!gloss) gloss = follower_.GlossGetsAway(hit, point, direction);
+      // One mirrored ray a pixel tells where the gloss ends.
+      std::optional<GlossEnd>& gloss = pixels[sample.pixel].frame_gloss;
+      if (!gloss) gloss = follower_.GlossOf(hit, point, direction);
       sample.inserted = follower_.Frame(hit, point, direction, gloss);
     }
     if (passed.maxCoeff() > 0) {
