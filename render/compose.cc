@@ -196,6 +196,7 @@ Result<ComposeCase> ReadComposeCase(const std::string& path) {
   options.least_weight = 0.001;
   options.finish.edge = EdgeFinish::kPolished;
   options.fade_temples = false;
+  options.bevel_mm = 0;  // cases are of flat edges
   options.world_from_camera = camera_from_world.rotation().transpose();
   if (json.Has("background")) {
     JsonReader background = json.Object("background");

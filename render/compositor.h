@@ -44,7 +44,10 @@ struct CompositorOptions {
   // A branch of the ray tree that carries less of its pixel is not followed: the third reflection
   // of uncoated glass carries 0.003.
   double least_weight = 0.004;
-  LensFinish finish;                    // coats, tint, edge
+  LensFinish finish;  // coats, tint, edge
+  // A lens's wall that stands this little before the frame is not seen: the bevel lies in the
+  // groove, while the solid that is traced has the groove's size through all of its thickness.
+  double bevel_mm = 1.5;
   bool fade_temples = true;             // the paper's feathering toward the ears
   double background_distance_mm = 800;  // of what lies behind the head, from the head's origin
   // Camera z of the background plane; given, it goes before background_distance_mm.

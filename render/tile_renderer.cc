@@ -220,7 +220,13 @@ void TileRenderer::TraceExactly(std::size_t i, const Batch& batch,
   const Ray ray{eye_, d.normalized()};
   const auto glass = follower_.FirstGlass(ray);
   const SceneHit& hit = batch.primary.hits[i];
-  if (!glass || (hit.hit() && double(hit.distance) < glass->hit.distance)) {
+  const double bevel = head_.options.bevel_mm;
+  const bool in_groove = glass && hit.hit() && hit.object == SceneObject::kFrame &&
+                         double(hit.distance) < glass->hit.distance + bevel &&
+                         (glass->hit.face == SolidFace::kWall ||
+                          head_.lenses[glass->lens].contour().Clearance(
+                              glass->hit.point.x(), glass->hit.point.y()) < bevel);
+  if (!glass || in_groove || (hit.hit() && double(hit.distance) < glass->hit.distance)) {
     Direct(i, batch, samples, pixels);
     return;
   }
