@@ -161,7 +161,10 @@ class GltfReader {
     if (normal != primitive.attributes.end()) {
       LG_ASSIGN(part.mesh.normals, Vectors(normal->second));
     }
-    for (Eigen::Vector3d& p : part.mesh.positions) p = transform * p;
+    for (Eigen::Vector3d& p : part.mesh.positions) {
+      p = transform * p;
+      if (!p.allFinite()) return Bad("got a position that is not finite");
+    }
     const Eigen::Matrix3d turn = transform.linear().inverse().transpose();
     for (Eigen::Vector3d& n : part.mesh.normals) n = (turn * n).normalized();
     if (transform.linear().determinant() < 0) {

@@ -181,6 +181,7 @@ class PlyParser {
         mesh.triangles.emplace_back(polygon[0], polygon[k], polygon[k + 1]);
       }
     }
+    if (!point.allFinite()) return Failure(name_ + ": got a vertex that is not finite");
     if (element.name == "vertex") mesh.positions.push_back(point);
     return {};
   }

@@ -11,7 +11,10 @@ namespace {
 
 constexpr std::size_t kHeader = 84, kFacet = 50;
 
-Result<ModelFile> FromCorners(std::vector<Eigen::Vector3d> corners) {
+Result<ModelFile> FromCorners(std::vector<Eigen::Vector3d> corners, const std::string& name) {
+  for (const Eigen::Vector3d& p : corners) {
+    if (!p.allFinite()) return Failure(name + ": got a vertex that is not finite");
+  }
   TriangleMesh soup;
   soup.positions = std::move(corners);
   for (int k = 0; k + 2 < int(soup.positions.size()); k += 3) {
@@ -25,7 +28,7 @@ Result<ModelFile> FromCorners(std::vector<Eigen::Vector3d> corners) {
   return model;
 }
 
-Result<ModelFile> ParseBinary(std::string_view bytes, std::size_t count) {
+Result<ModelFile> ParseBinary(std::string_view bytes, std::size_t count, const std::string& name) {
   std::vector<Eigen::Vector3d> corners;
   corners.reserve(3 * count);
   for (std::size_t i = 0; i < count; ++i) {
@@ -35,7 +38,7 @@ Result<ModelFile> ParseBinary(std::string_view bytes, std::size_t count) {
       corners.emplace_back(numbers[3 * k], numbers[3 * k + 1], numbers[3 * k + 2]);
     }
   }
-  return FromCorners(std::move(corners));
+  return FromCorners(std::move(corners), name);
 }
 
 Result<ModelFile> ParseText(std::string_view text, const std::string& name) {
@@ -60,7 +63,7 @@ Result<ModelFile> ParseText(std::string_view text, const std::string& name) {
     return Failure(name + ": got " + std::to_string(corners.size()) +
                    " vertices, want three a facet");
   }
-  return FromCorners(std::move(corners));
+  return FromCorners(std::move(corners), name);
 }
 
 }  // namespace
@@ -70,7 +73,8 @@ Result<ModelFile> ParseStl(std::string_view bytes, const std::string& name) {
   if (bytes.size() >= kHeader) {
     std::uint32_t count = 0;
     std::memcpy(&count, bytes.data() + 80, sizeof count);
-    if (bytes.size() == kHeader + kFacet * std::size_t(count)) return ParseBinary(bytes, count);
+    if (bytes.size() == kHeader + kFacet * std::size_t(count))
+      return ParseBinary(bytes, count, name);
   }
   if (bytes.substr(0, 5) != "solid") {
     return Failure(name + ": got neither ASCII STL nor a binary one of the length it states");

@@ -9,6 +9,7 @@
 
 #include <algorithm>
 #include <exception>
+#include <filesystem>
 #include <fstream>
 
 #include "base/atomic_file.h"
@@ -17,12 +18,14 @@
 namespace lorgnette {
 namespace {
 
-constexpr int kMaxSide = 1 << 16;  // a larger data window is a broken or hostile file
+constexpr int kMaxSide = 1 << 16;        // a larger data window is a broken or hostile file
+constexpr long kMostPixelsAByte = 4096;  // of the file; the tightest compression packs hundreds
 constexpr float kHalfMax = 65504.0f;
 
 template <int kChannels>
 Result<Image<float, kChannels>> Read(const std::string& path) {
   try {
+    const long bytes = long(std::filesystem::file_size(path));
     Imf::InputFile file(path.c_str());
     const Imath::Box2i window = file.header().dataWindow();
     const long width = long(window.max.x) - window.min.x + 1;
@@ -30,6 +33,10 @@ Result<Image<float, kChannels>> Read(const std::string& path) {
     if (width < 1 || height < 1 || width > kMaxSide || height > kMaxSide) {
       return Failure(fmt::format("{}: got a data window of {}x{}, want sides of 1..{}", path, width,
                                  height, kMaxSide));
+    }
+    if (width * height / kMostPixelsAByte > bytes) {
+      return Failure(
+          fmt::format("{}: got {} bytes for {}x{} pixels, too few", path, bytes, width, height));
     }
     const Imf::ChannelList& channels = file.header().channels();
     const bool grey = !channels.findChannel("R") && channels.findChannel("Y");

@@ -106,6 +106,10 @@ Result<ImageRgbF> ReadRadianceHdr(const std::string& path) {
     return Failure(fmt::format("{}: got the resolution line `{}`, want `-Y height +X width`", path,
                                resolution));
   }
+  if (long(height) * 4 > long(content.size())) {  // a row takes a pixel's bytes at least
+    return Failure(fmt::format("{}: got {} bytes for {} rows, the picture is cut short", path,
+                               content.size(), height));
+  }
   ImageRgbF image(width, height);
   std::vector<Rgbe> line(std::size_t(width), Rgbe{});
   for (int y = 0; y < height; ++y) {

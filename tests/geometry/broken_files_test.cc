@@ -5,6 +5,8 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <limits>
+
 #include "base/atomic_file.h"
 #include "geometry/frame_io.h"
 #include "geometry/frame_parameters.h"
@@ -73,8 +75,20 @@ std::vector<Broken> Corpus() {
       {"stl", ""},
       {"stl", "solid nothing"},
       {"stl", std::string(80, 'x') + std::string("\xff\xff\xff\xff", 4)},
+      {"stl", "solid a\nvertex 0 0 0\nvertex nan 0 0\nvertex 0 1 0\n"},
+      {"stl", Binary(std::string(80, ' ') + std::string("\x01\0\0\0", 4),
+                     {0, 0, 1, 0, 0, 0, 1, std::numeric_limits<float>::infinity(), 0, 0, 1, 0}) +
+                  std::string(2, '\0')},
       {"stl", "solid a\nfacet normal 0 0 1\nouter loop\nvertex 0 0\n"},
+      {"ply", Binary("ply\nformat binary_little_endian 1.0\nelement vertex 3\nproperty float x\n"
+                     "property float y\nproperty float z\nelement face 1\n"
+                     "property list uchar uchar vertex_indices\nend_header\n",
+                     {0, 0, 0, 1, 0, 0, 0, 1, std::numeric_limits<float>::quiet_NaN()}) +
+                  std::string("\3\0\1\2", 4)},
       {"gltf", ""},
+      {"gltf", gltf + R"("accessors":[{"bufferView":0,"componentType":5126,"count":1,
+"type":"VEC3"}],"bufferViews":[{"buffer":0,"byteLength":12}],
+"buffers":[{"byteLength":12,"uri":"data:application/octet-stream;base64,//////////8AAAAA"}]})"},
       {"gltf", "{}"},
       {"gltf", "glTF\x02"},
       {"gltf", Binary("glTF", {1e30f, -1, 0, 0, 0})},
