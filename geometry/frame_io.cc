@@ -32,11 +32,13 @@ std::string ShippedPath(const std::string& name) {
   return (fs::path(DataDirectory()) / "frames" / (name + ".json")).string();
 }
 
-// The frame of a lab trace, in the make that its FTYP names: 2 metal, else plastic.
+// The frame of a lab trace, in the make that its FTYP names: 2 metal, 3 rimless (with parts of
+// metal), else plastic.
 Result<FrameModel> LoadTrace(const std::string& path) {
   LG_ASSIGN(const std::string bytes, ReadFile(path));
   LG_ASSIGN(const OmaFile job, OmaFile::Parse(bytes, path));
-  const bool metal = job.Get("FTYP").value_or("1") == "2";
+  const std::string make = job.Get("FTYP").value_or("1").substr(0, 1);
+  const bool metal = make == "2" || make == "3";
   LG_ASSIGN(FrameParameters style, ReadParameters(ShippedPath(metal ? "round" : "panto")));
   style.name = fs::path(path).stem().string();
   style.rim.flares.clear();

@@ -17,6 +17,7 @@ class Reader {
     FrameParameters p;
     p.name = root_.String("name");
     p.description = root_.StringOr("description", "");
+    p.mount = ReadMount(root_);
     JsonReader boxing = root_.Object("boxing");
     p.a_mm = boxing.Number("A", 30, 80);
     p.b_mm = boxing.Number("B", 15, 70);
@@ -108,6 +109,17 @@ class Reader {
     bridge.depth_mm = json.Number("depth", 0.8, 10);
     bridge.material = Material(json, "material", "bridges.material");
     return bridge;
+  }
+
+  static FrameMount ReadMount(JsonReader& json) {
+    if (!json.Has("mount")) return FrameMount::kFullRim;
+    const std::string mount = json.String("mount");
+    if (mount != "full rim" && mount != "half rim" && mount != "rimless") {
+      json.Fail("mount", "got \"" + mount + "\", want full rim, half rim or rimless");
+    }
+    return mount == "half rim"  ? FrameMount::kHalfRim
+           : mount == "rimless" ? FrameMount::kRimless
+                                : FrameMount::kFullRim;
   }
 
   PadParameters ReadPads(JsonReader json) {

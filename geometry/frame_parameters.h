@@ -72,6 +72,7 @@ struct TempleParameters {
 
 struct FrameParameters {
   std::string name, description;
+  FrameMount mount = FrameMount::kFullRim;   // half rim: above only; rimless: no rim at all
   double a_mm = 50, b_mm = 40, dbl_mm = 18;  // boxing, of the groove bottom
   std::vector<double> bridge_sizes_mm;       // the DBL values it is offered in; empty: dbl_mm alone
   Polygon2 outline;                          // control points of a ClosedSpline, any size

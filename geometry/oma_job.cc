@@ -15,6 +15,7 @@ namespace {
 
 constexpr int kTraceSplinePieces = 90;  // about 1.7 mm each: smooths what 0.01 mm steps leave
 constexpr double kOnEdge = 1e-9;        // a ray through a corner meets one of its edges at least
+constexpr double kLeastCurve = 0.5, kGreatestCurve = 9;  // dioptres that a rim can be bent to
 constexpr int kTraceAngles = 400, kThicknessAngles = 72;
 
 // Distance from the origin to the contour at equal angles.
@@ -167,7 +168,18 @@ Result<FrameModel> FrameAroundTrace(const OmaFile& job, FrameParameters style) {
   LG_RETURN_IF_ERROR(take("DBL", 8, 35, style.dbl_mm));
   LG_RETURN_IF_ERROR(take("PANTO", 0, 25, style.pantoscopic_tilt_deg));
   LG_RETURN_IF_ERROR(take("ZTILT", 0, 25, style.face_form_deg));
-  LG_RETURN_IF_ERROR(take("FCRV", 0.5, 9, style.frame_curve_diopters));
+  // A rim of unknown curve is bent to the lens that the job speaks of.
+  LG_ASSIGN(const OmaPair front, job.Numbers("FRNT"));
+  const double curve = OmaCurveDiopters((front.left ? front.left : front.right).value_or(0));
+  if (curve >= kLeastCurve && curve <= kGreatestCurve) style.frame_curve_diopters = curve;
+  LG_RETURN_IF_ERROR(take("FCRV", kLeastCurve, kGreatestCurve, style.frame_curve_diopters));
+  LG_ASSIGN(const OmaPair make, job.Numbers("FTYP"));
+  LG_ASSIGN(const OmaPair edge, job.Numbers("ETYP"));
+  if (make.left == 3 || edge.left == 2) {
+    style.mount = FrameMount::kRimless;
+  } else if (edge.left == 3) {
+    style.mount = FrameMount::kHalfRim;
+  }
   FrameModel frame = BuildFrame(style);
   frame.notes.push_back("built around the trace of " + job.name());
   return frame;

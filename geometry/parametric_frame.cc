@@ -9,6 +9,9 @@
 namespace lorgnette {
 namespace {
 
+// Where a half rim ends, below hinge and pad: angles of the outline's points.
+constexpr double kHalfRimFrom_deg = -12, kHalfRimTo_deg = 192;
+
 // Adds a left part and its mirror image.
 class PartList {
  public:
@@ -37,8 +40,13 @@ FrameModel BuildFrame(const FrameParameters& parameters, const FrameTessellation
   FrameModel model;
   model.name = parameters.name;
   PartList parts(model, parameters);
-  parts.AddPair("rim", FramePartKind::kFront, rim.Mesh(fineness.rim_rings),
-                parameters.rim.material);
+  if (parameters.mount != FrameMount::kRimless) {
+    parts.AddPair("rim", FramePartKind::kFront,
+                  parameters.mount == FrameMount::kFullRim
+                      ? rim.Mesh(fineness.rim_rings)
+                      : rim.UpperMesh(kHalfRimFrom_deg, kHalfRimTo_deg, fineness.rim_rings / 2),
+                  parameters.rim.material);
+  }
   for (std::size_t i = 0; i < parameters.bridges.size(); ++i) {
     parts.Add(i == 0 ? "bridge" : "upper bridge", FramePartKind::kFront,
               BridgeMesh(rim, parameters.rim, parameters.bridges[i]),
@@ -57,7 +65,9 @@ FrameModel BuildFrame(const FrameParameters& parameters, const FrameTessellation
   parts.AddPair("temple tip", FramePartKind::kTemple, temple.sleeve,
                 parameters.temples.tip_material);
 
+  model.mount = parameters.mount;
   model.left = rim.Opening(fineness.contour_points);
+  if (parameters.mount != FrameMount::kFullRim) model.left.aperture_mm = model.left.contour_mm;
   model.right = MirroredX(model.left);
   model.boxing = MeasureContour(model.left.contour_mm);
   model.boxing.dbl_mm = parameters.dbl_mm;

@@ -132,6 +132,19 @@ TriangleMesh RimShape::Mesh(int rings) const {
   return SweepClosed(ring, outline_.ArcLengthParameters(rings));
 }
 
+TriangleMesh RimShape::UpperMesh(double from_deg, double to_deg, int rings) const {
+  const double from = ParameterAtAngle(from_deg + 360) - 1, to = ParameterAtAngle(to_deg);
+  const VolumeMap map = [&](double v, double q, double w) -> Eigen::Vector3d {
+    const double s = from + v * (to - from);
+    return Point(s, (1 + q) / 2 * Width(s), w * rim_.depth_mm / 2);
+  };
+  BarShape shape;
+  shape.section = Superellipse(32, 4.0);
+  shape.rings = rings;
+  shape.dome_rings = 8;
+  return SweepBar(map, shape);
+}
+
 Eigen::Vector3d MirroredX(const Eigen::Vector3d& p) { return {-p.x(), p.y(), p.z()}; }
 
 TriangleMesh MirroredX(const TriangleMesh& mesh) {

@@ -4,6 +4,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <filesystem>
 #include <iostream>
@@ -14,6 +15,7 @@
 #include "geometry/closed_curve.h"
 #include "geometry/cut_lens.h"
 #include "geometry/frame_io.h"
+#include "geometry/mesh_check.h"
 
 namespace lorgnette {
 namespace {
@@ -163,6 +165,38 @@ TEST(FrameAroundTrace, HasTheTracesBoxing) {
   EXPECT_NEAR(frame->boxing.b_mm, 46, kTraceStep_mm);
   EXPECT_EQ(frame->boxing.dbl_mm, 18);
   EXPECT_NEAR(frame->boxing.circumference_mm, 2 * kPi * 23, kTraceStep_mm);
+}
+
+TEST(FrameAroundTrace, MakesHalfRimAndRimlessFramesWhereTheJobSaysSo) {
+  const auto round = ParseFrameParameters(*ReadFile(DataDirectory() + "/frames/round.json"), "r");
+  ASSERT_TRUE(round);
+  const auto frame = [&](const std::string& labels) {
+    return *FrameAroundTrace(*OmaFile::Parse(labels + RoundTrace(400, "R"), "t.oma"), *round);
+  };
+  const auto rims = [](const FrameModel& model) {
+    return std::count_if(model.parts.begin(), model.parts.end(), [](const FramePart& part) {
+      return part.name.find("rim") != std::string::npos;
+    });
+  };
+  const FrameModel full = frame("ETYP=1\n"), half = frame("ETYP=3\n"), none = frame("FTYP=3\n");
+  EXPECT_EQ(full.mount, FrameMount::kFullRim);
+  EXPECT_EQ(half.mount, FrameMount::kHalfRim);
+  EXPECT_EQ(none.mount, FrameMount::kRimless);
+  EXPECT_EQ(frame("ETYP=2;2\n").mount, FrameMount::kRimless);
+  EXPECT_EQ(rims(full), 2);
+  EXPECT_EQ(rims(half), 2);
+  EXPECT_EQ(rims(none), 0);
+  EXPECT_EQ(half.left.contour_mm, full.left.contour_mm);
+  EXPECT_EQ(half.left.aperture_mm, half.left.contour_mm);
+  for (const FramePart& part : half.parts) {
+    if (part.name != "left rim") continue;
+    const MeshReport report = CheckMesh(part.mesh, true);
+    EXPECT_TRUE(report.closed());
+    EXPECT_EQ(report.self_intersections, 0);
+    EXPECT_GT(report.volume_mm3, 0);
+    // The lower half of the lens, 23 mm in radius, hangs in a thread.
+    for (const Eigen::Vector3d& p : part.mesh.positions) EXPECT_GT(p.y(), -8);
+  }
 }
 
 TEST(OmaFile, RealTracesAgreeWithTheirOwnBoxingAndCircumference) {
