@@ -1,17 +1,21 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "optics/soft_progressive.h"
 
-#include <Eigen/Cholesky>
 #include <algorithm>
 #include <array>
 #include <cmath>
 #include <memory>
+#include <utility>
+
+#include "optics/banded_system.h"
 
 namespace lorgnette {
 namespace {
 
-constexpr int kGridNodes = 23;      // each way
-constexpr int kSamplesPerCell = 2;  // each way
+constexpr int kGridNodes = 23;  // each way
+constexpr int kSide = kGridNodes + 2;
+constexpr int kBand = 3 * kSide + 3;  // a spline's sixteen coefficients reach three on, either way
+constexpr int kSamplesPerCell = 2;    // each way
 constexpr int kGaussNewtonSteps = 6;
 constexpr double kMostRedrive = 1.5;
 constexpr double kMargin_mm = 2.5;  // of the grid beyond the rim
@@ -70,6 +74,13 @@ Row RowAt(double position, double pitch, int nodes) {
   return row;
 }
 
+// Terms of the sum of squares that share sixteen coefficients, weighted: gradients and residuals.
+struct CellRows {
+  int count = 0;
+  Eigen::Matrix<double, 16, 3 * kSamplesPerCell * kSamplesPerCell> gradients;  // a column a term
+  double residuals[3 * kSamplesPerCell * kSamplesPerCell];
+};
+
 // The spline's unknowns and the normal equations of one Gauss-Newton step.
 class Fit {
  public:
@@ -78,37 +89,45 @@ class Fit {
     grid_.base_curvature = hard.curvature_far();
     grid_.x0 = grid_.y0 = -half_width;
     grid_.pitch_x = grid_.pitch_y = 2 * half_width / (kGridNodes - 1);
-    grid_.coefficients = Eigen::MatrixXd::Zero(kGridNodes + 2, kGridNodes + 2);
+    grid_.coefficients = Eigen::MatrixXd::Zero(kSide, kSide);
   }
 
-  void Step() {
-    const int side = kGridNodes + 2, n = side * side;
-    Eigen::MatrixXd normal = Eigen::MatrixXd::Zero(n, n);
+  // False where the equations have no solution.
+  bool Step() {
+    const int n = kSide * kSide;
+    BandedSystem normal(n, kBand);
     Eigen::VectorXd right = Eigen::VectorXd::Zero(n);
-    const int samples = kSamplesPerCell * (kGridNodes - 1);
-    const double pitch = 2 * half_ / samples;
-    for (int i = 0; i < samples; ++i) {
-      for (int j = 0; j < samples; ++j) {
-        const double x = -half_ + (i + 0.5) * pitch, y = -half_ + (j + 0.5) * pitch;
-        if (x * x + y * y <= half_ * half_) AddSample(x, y, normal, right);
+    const double pitch = grid_.pitch_x / kSamplesPerCell;
+    for (int cell_x = 0; cell_x < kGridNodes - 1; ++cell_x) {
+      for (int cell_y = 0; cell_y < kGridNodes - 1; ++cell_y) {
+        CellRows rows;
+        for (int k = 0; k < kSamplesPerCell * kSamplesPerCell; ++k) {
+          const int i = kSamplesPerCell * cell_x + k / kSamplesPerCell;
+          const int j = kSamplesPerCell * cell_y + k % kSamplesPerCell;
+          const double x = -half_ + (i + 0.5) * pitch, y = -half_ + (j + 0.5) * pitch;
+          if (x * x + y * y <= half_ * half_) AddSample(x, y, rows);
+        }
+        AddCell(cell_x, cell_y, rows, normal, right);
       }
     }
     AddVertex(normal, right);
     // A trace of stiffness settles coefficients that no sample touches.
-    const double stiff = 1e-9 * normal.diagonal().mean();
+    const double stiff = 1e-9 * normal.MeanDiagonal();
     for (int k = 0; k < n; ++k) {
       normal(k, k) += stiff;
       right(k) -= stiff * Coefficient(k);
     }
-    const Eigen::VectorXd step = normal.selfadjointView<Eigen::Lower>().ldlt().solve(right);
-    for (int k = 0; k < n; ++k) Coefficient(k) += step(k);
+    const auto step = normal.SolveInPlace(std::move(right));
+    if (!step) return false;
+    for (int k = 0; k < n; ++k) Coefficient(k) += (*step)(k);
     Redrive();
+    return true;
   }
 
   // The vertex keeps its place and normal to the last bit: a plane is in the spline's span.
   SplineGrid Finished() const {
     SplineGrid grid = grid_;
-    const auto jet = JetOf(GridSurface{std::make_shared<SplineGrid>(grid)}, 0, 0);
+    const auto jet = JetOf(Current(), 0, 0);
     for (int i = 0; i < grid.coefficients.rows(); ++i) {
       for (int j = 0; j < grid.coefficients.cols(); ++j) {
         const double x = grid.x0 + (i - 1) * grid.pitch_x, y = grid.y0 + (j - 1) * grid.pitch_y;
@@ -123,41 +142,52 @@ class Fit {
   void Redrive() {
     const double v = hard_.start() - hard_.length();
     const double x = -std::sin(hard_.angle()) * v, y = std::cos(hard_.angle()) * v;
-    const GridSurface surface{std::make_shared<SplineGrid>(grid_)};
+    const GridSurface surface = Current();
     const auto far = JetOf(surface, 0, 0), near = JetOf(surface, x, y);
     if (!far || !near) return;
     const double reached = BendOf(*near).mean - BendOf(*far).mean;
     if (reached > 0) drive_ *= std::min(hard_.curvature_add() / reached, kMostRedrive);
   }
-  double& Coefficient(int k) {
-    return grid_.coefficients(k / (kGridNodes + 2), k % (kGridNodes + 2));
-  }
+  // The surface as it stands; it holds no copy, and so lives no longer than this.
+  GridSurface Current() const { return {{std::shared_ptr<void>(), &grid_}}; }
+  double& Coefficient(int k) { return grid_.coefficients(k / kSide, k % kSide); }
 
-  // Adds weight * (residual + gradient . step)^2, the gradient by the jet's derivatives.
-  void Accumulate(const Row& rx, const Row& ry, double weight, double residual,
-                  const std::array<double, 6>& by_jet, Eigen::MatrixXd& normal,
-                  Eigen::VectorXd& right) const {
-    int at[16];
-    double g[16];
+  // Adds the term weight * (residual + gradient . step)^2, the gradient by the jet's derivatives.
+  static void AddRow(const Row& rx, const Row& ry, double weight, double residual,
+                     const std::array<double, 6>& by_jet, CellRows& rows) {
+    const double root = std::sqrt(weight);
+    auto g = rows.gradients.col(rows.count);
     for (int a = 0; a < 4; ++a) {
+      const double by_value = by_jet[0] * rx.b[a] + by_jet[1] * rx.b1[a] + by_jet[3] * rx.b2[a];
+      const double by_slope = by_jet[2] * rx.b[a] + by_jet[4] * rx.b1[a];
+      const double by_bend = by_jet[5] * rx.b[a];
       for (int b = 0; b < 4; ++b) {
-        const int k = 4 * a + b;
-        at[k] = (rx.first + a) * (kGridNodes + 2) + ry.first + b;
-        g[k] = by_jet[0] * rx.b[a] * ry.b[b] + by_jet[1] * rx.b1[a] * ry.b[b] +
-               by_jet[2] * rx.b[a] * ry.b1[b] + by_jet[3] * rx.b2[a] * ry.b[b] +
-               by_jet[4] * rx.b1[a] * ry.b1[b] + by_jet[5] * rx.b[a] * ry.b2[b];
+        g(4 * a + b) = root * (by_value * ry.b[b] + by_slope * ry.b1[b] + by_bend * ry.b2[b]);
       }
     }
-    for (int p = 0; p < 16; ++p) {
-      right(at[p]) -= weight * g[p] * residual;
-      for (int q = 0; q < 16; ++q) {
-        if (at[p] >= at[q]) normal(at[p], at[q]) += weight * g[p] * g[q];
+    rows.residuals[rows.count++] = root * residual;
+  }
+
+  // All of a cell's terms at once: its sixteen coefficients are the same for all.
+  static void AddCell(int cell_x, int cell_y, const CellRows& rows, BandedSystem& normal,
+                      Eigen::VectorXd& right) {
+    const auto place = [&](int k) { return (cell_x + k / 4) * kSide + cell_y + k % 4; };
+    for (int q = 0; q < 16; ++q) {
+      for (int p = q / 4 * 4; p < 16; p += 4) {
+        Eigen::Vector4d sums = Eigen::Vector4d::Zero();
+        for (int k = 0; k < rows.count; ++k) {
+          sums += rows.gradients(q, k) * rows.gradients.block<4, 1>(p, k);
+        }
+        for (int r = std::max(p, q); r < p + 4; ++r) normal(place(r), place(q)) += sums(r - p);
+      }
+      for (int k = 0; k < rows.count; ++k) {
+        right(place(q)) -= rows.gradients(q, k) * rows.residuals[k];
       }
     }
   }
 
-  void AddSample(double x, double y, Eigen::MatrixXd& normal, Eigen::VectorXd& right) const {
-    const auto jet = JetOf(GridSurface{std::make_shared<SplineGrid>(grid_)}, x, y);
+  void AddSample(double x, double y, CellRows& rows) const {
+    const auto jet = JetOf(Current(), x, y);
     if (!jet) return;
     const double co = -std::sin(hard_.angle()), si = std::cos(hard_.angle());
     const double u = si * x - co * y, v = co * x + si * y;
@@ -185,20 +215,22 @@ class Fit {
     differentiate(&SurfaceJet::zxy, 4, 1e-6);
     differentiate(&SurfaceJet::zyy, 5, 1e-6);
     const double p2 = power_ * power_;
-    Accumulate(rx, ry, weights.mean * p2, bend.mean - wanted, by_mean, normal, right);
-    Accumulate(rx, ry, 4 * weights.cylinder * p2, bend.plus, by_plus, normal, right);
-    Accumulate(rx, ry, 4 * weights.cylinder * p2, bend.cross, by_cross, normal, right);
+    AddRow(rx, ry, weights.mean * p2, bend.mean - wanted, by_mean, rows);
+    AddRow(rx, ry, 4 * weights.cylinder * p2, bend.plus, by_plus, rows);
+    AddRow(rx, ry, 4 * weights.cylinder * p2, bend.cross, by_cross, rows);
   }
 
   // The spline adds neither height nor slope at the vertex: a plane is in its span, so this holds
   // to rounding and costs the design nothing.
-  void AddVertex(Eigen::MatrixXd& normal, Eigen::VectorXd& right) const {
-    const auto jet = JetOf(GridSurface{std::make_shared<SplineGrid>(grid_)}, 0, 0);
+  void AddVertex(BandedSystem& normal, Eigen::VectorXd& right) const {
+    const auto jet = JetOf(Current(), 0, 0);
     const Row r = RowAt(half_, grid_.pitch_x, kGridNodes);
     constexpr double kHard = 1e6;
-    Accumulate(r, r, kHard, jet->z, {1, 0, 0, 0, 0, 0}, normal, right);
-    Accumulate(r, r, kHard, jet->zx, {0, 1, 0, 0, 0, 0}, normal, right);
-    Accumulate(r, r, kHard, jet->zy, {0, 0, 1, 0, 0, 0}, normal, right);
+    CellRows rows;
+    AddRow(r, r, kHard, jet->z, {1, 0, 0, 0, 0, 0}, rows);
+    AddRow(r, r, kHard, jet->zx, {0, 1, 0, 0, 0, 0}, rows);
+    AddRow(r, r, kHard, jet->zy, {0, 0, 1, 0, 0, 0}, rows);
+    AddCell(r.first, r.first, rows, normal, right);
   }
 
   const ProgressiveSurface& hard_;
@@ -217,7 +249,9 @@ Result<Surface> SoftProgressive(const ProgressiveSurface& hard, double index,
         "base curve or a smaller outline");
   }
   Fit fit(hard, index, half);
-  for (int i = 0; i < kGaussNewtonSteps; ++i) fit.Step();
+  for (int i = 0; i < kGaussNewtonSteps; ++i) {
+    if (!fit.Step()) return Failure("lens: no soft progressive front is found for this outline");
+  }
   return Surface(GridSurface{std::make_shared<SplineGrid>(fit.Finished())});
 }
 
