@@ -23,6 +23,9 @@ using lorgnette::page::Mirror;
 using lorgnette::page::Slot;
 using lorgnette::page::WornFrame;
 
+// From the irises to the wall behind the head.
+constexpr double kBehind_mm = 300;
+
 std::vector<float>& Rings() {
   static std::vector<float> rings;
   return rings;
@@ -143,7 +146,13 @@ const float* lg_view(int slot_number, const PageView* view, int w, int h) {
     }
     if (view->rings != 0) Rings()[k] = float(RingShare(*slot, mirror, trace, ray.direction));
     if (trace.status != RayStatus::kOk) continue;
-    const auto met = lorgnette::page::MeetFace(frame.FromLens(trace.exit), iris_z, view->face_x_mm);
+    const Ray exit = frame.FromLens(trace.exit);
+    auto met = lorgnette::page::MeetFace(exit, iris_z, view->face_x_mm);
+    // A ray that passes the head goes on to the wall: so the outline of the face breaks at the rim.
+    if (!met && exit.direction.z() > 0) {
+      met = exit.origin +
+            (iris_z + kBehind_mm - exit.origin.z()) / exit.direction.z() * exit.direction;
+    }
     if (!met) {
       pixel[0] = float(RayStatus::kMissesSurface);
       continue;

@@ -13,6 +13,7 @@ import { straight } from "./worn";
 const GRID_PX = 3;
 const FINE_GRID_PX = 1.5;
 const IRIS_SAMPLES = 241;
+const LOST = 60; // the grey of a place that no light of the face reaches
 const EDGE_LIGHT = 0.8; // of a ground edge in the room's light, white being 1
 const RINGS_SHOWN = 4; // times as bright, and said so: real ones are faint but before a lamp
 // The face is drawn once for a lens this thick; another one shifts the camera by the difference.
@@ -158,12 +159,21 @@ export function renderLens(
       const w10 = fi * (1 - fj);
       const w01 = (1 - fi) * fj;
       const w11 = fi * fj;
-      if (map[k] !== 0 || map[k + 4] !== 0 || map[kd] !== 0 || map[kd + 4] !== 0) {
-        to[o] = to[o + 1] = to[o + 2] = 60; // no light of the face comes here
+      const lost = map[k] + map[k + 4] + map[kd] + map[kd + 4] !== 0;
+      // Where the face's light ends between the rays, it fades over that width.
+      const v00 = lost && map[k] !== 0 ? 0 : w00;
+      const v10 = lost && map[k + 4] !== 0 ? 0 : w10;
+      const v01 = lost && map[kd] !== 0 ? 0 : w01;
+      const v11 = lost && map[kd + 4] !== 0 ? 0 : w11;
+      const seen = v00 + v10 + v01 + v11;
+      if (seen < 1e-6) {
+        to[o] = to[o + 1] = to[o + 2] = LOST; // no light of the face comes here
       } else {
-        const x = w00 * map[k + 1] + w10 * map[k + 5] + w01 * map[kd + 1] + w11 * map[kd + 5] - 0.5;
-        const y = w00 * map[k + 2] + w10 * map[k + 6] + w01 * map[kd + 2] + w11 * map[kd + 6] - 0.5;
-        const kept = w00 * map[k + 3] + w10 * map[k + 7] + w01 * map[kd + 3] + w11 * map[kd + 7];
+        const mixed = (slot: number): number => (v00 * map[k + slot] + v10 * map[k + 4 + slot] +
+          v01 * map[kd + slot] + v11 * map[kd + 4 + slot]) / seen;
+        const x = mixed(1) - 0.5;
+        const y = mixed(2) - 0.5;
+        const kept = mixed(3);
         const cx = Math.min(width - 1.001, Math.max(0, x));
         const cy = Math.min(height - 1.001, Math.max(0, y));
         const ix = Math.floor(cx);
@@ -177,7 +187,7 @@ export function renderLens(
         for (let c = 0; c < 3; ++c) {
           const top = from[s + c] + fx * (from[s + 4 + c] - from[s + c]);
           const low = from[sd + c] + fx * (from[sd + 4 + c] - from[sd + c]);
-          to[o + c] = gain * (top + fy * (low - top));
+          to[o + c] = LOST + seen * (gain * (top + fy * (low - top)) - LOST);
         }
       }
       if (!rings && !mirrored) continue;

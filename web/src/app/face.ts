@@ -10,7 +10,6 @@ export const PX_PER_MM = 6;
 export const WIDTH = (WINDOW.right - WINDOW.left) * PX_PER_MM;
 export const HEIGHT = (WINDOW.top - WINDOW.bottom) * PX_PER_MM;
 
-
 type Context = CanvasRenderingContext2D;
 
 function toMm(ctx: Context): void {
@@ -117,12 +116,13 @@ export function drawFace(ctx: Context, pupils: Pupils): void {
   ctx.fillStyle = "#d39d83";
   for (const side of [-1, 1]) {
     ctx.beginPath();
-    ctx.ellipse(side * 74, -14, 6.5, 19, side * -0.12, 0, 7);
+    ctx.ellipse(side * 69, -14, 6.5, 19, side * -0.12, 0, 7);
     ctx.fill();
   }
+  // As wide as a mean head at the eyes: a frame of usual width reaches near its outline.
   const head = new Path2D(
-    "M-72 60C-75 30 -73.5 5 -71 -14C-69 -32 -64 -50 -56 -64L56 -64C64 -50 69 -32 71 -14C73.5 5 75 30 72 60Z");
-  const skin = ctx.createLinearGradient(-72, 0, 72, 0);
+    "M-67 60C-69.8 30 -68.4 5 -66 -14C-64 -32 -60 -50 -52 -64L52 -64C60 -50 64 -32 66 -14C68.4 5 69.8 30 67 60Z");
+  const skin = ctx.createLinearGradient(-67, 0, 67, 0);
   skin.addColorStop(0, "#b97f66");
   skin.addColorStop(0.14, "#d7a187");
   skin.addColorStop(0.38, "#e9bda4");
@@ -165,7 +165,7 @@ export function drawFace(ctx: Context, pupils: Pupils): void {
   for (const side of [-1, 1]) {
     ctx.save();
     ctx.scale(side, 1);
-    ctx.fill(new Path2D("M80 60C80 30 79 8 75 -13C73 -7 70.6 -6 69.6 -3C69.4 12 69 26 64 37C62 43 58 48 54 60Z"));
+    ctx.fill(new Path2D("M75 60C75 30 74 8 70 -13C68 -7 65.6 -6 64.7 -3C64.5 12 64 26 59.5 37C57.7 43 54 48 50 60Z"));
     ctx.restore();
   }
   drawEye(ctx, pupils.right.x, pupils.right.y, -1, pupils.iris);
@@ -229,8 +229,8 @@ export function drawFrame(ctx: Context, outlines: [number, number][][], colour: 
     ctx.fillStyle = colour;
     ctx.beginPath();
     ctx.moveTo(x - side * 0.5, y + 5.2);
-    ctx.lineTo(side * Math.max(76, Math.abs(x) + 6), y + 3.4);
-    ctx.lineTo(side * Math.max(76, Math.abs(x) + 6), y + 0.4);
+    ctx.lineTo(side * Math.max(71, Math.abs(x) + 5), y + 3.4);
+    ctx.lineTo(side * Math.max(71, Math.abs(x) + 5), y + 0.4);
     ctx.lineTo(x - side * 0.5, y - 0.4);
     ctx.closePath();
     ctx.fill();

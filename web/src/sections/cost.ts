@@ -136,7 +136,8 @@ export function costSection(wanted: () => boolean): HTMLElement {
         h("th", { scope: "row" }, nameOf(p),
           p.preset ? h("span", { class: "unit" }, ` --quality ${p.preset}`) : null,
           p.note ? h("span", { class: "unit" }, ` ${p.note}`) : null),
-        h("td", {}, `${short(p.time)} ± ${short(p.time_spread / 2)}`),
+        h("td", {}, short(p.time),
+          h("span", { class: "spread" }, ` ± ${short(p.time_spread / 2)}`)),
         h("td", {}, short(p.errors[name])),
         h("td", {}, p.front ? t("cost.onFront") : ""))));
     tell(points);
@@ -182,7 +183,7 @@ export function costSection(wanted: () => boolean): HTMLElement {
     }
     study.replaceChildren(...report.studies.map((one) => h("option", { value: one.name }, one.title)));
     setText(status, t("cost.machine", {
-      machine: Object.values(report.machine).join(", "), scene: report.scene ?? "",
+      machine: Object.entries(report.machine).map(([k, v]) => k === "threads" ? t("cost.threads", { count: v }) : v).join(", "), scene: report.scene ?? "",
       calibration: short(report.calibration_ns) }));
     body.hidden = false;
     chooseStudy();

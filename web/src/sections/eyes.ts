@@ -75,6 +75,10 @@ export function eyesSection(
       line("eyes.paraxial", "paraxial"), line("eyes.thin", "thin")));
 
   const painted: Partial<Record<EyeName, Painted>> = {};
+  // The face with the frame's shadow on it.
+  const [behind, behindContext] = canvasOf(WIDTH, HEIGHT);
+  let drawnBehind = "";
+  const shortened = ([x, y]: [number, number]): string => `${x.toFixed(2)} ${y.toFixed(2)}`;
 
   function draw(): void {
     const { order, sheet } = store.lenses;
@@ -86,10 +90,17 @@ export function eyesSection(
       else drawFace(base, pupils);
       source = base.getImageData(0, 0, WIDTH, HEIGHT);
     }
-    ctx.putImageData(source, 0, 0);
     const outlines = EYES.map((eye) => outlineOf(store.engine, order, eye));
+    const shaded = !bare.checked && !noFrame.checked;
+    // A blur of the whole picture is dear, and no power changes it.
+    const behindKey = `${key} ${shaded ? outlines.map((o) => o.map(shortened)) : ""}`;
+    if (behindKey !== drawnBehind) {
+      drawnBehind = behindKey;
+      behindContext.putImageData(source, 0, 0);
+      if (shaded) shadow(behindContext, outlines);
+    }
+    ctx.drawImage(behind, 0, 0);
     if (!bare.checked) {
-      if (!noFrame.checked) shadow(ctx, outlines);
       EYES.forEach((eye, i) => paintLens(eye, outlines[i]));
       if (!noFrame.checked) drawFrame(ctx, outlines, "#23262b");
     }

@@ -19,6 +19,7 @@ const COLUMNS = 49;
 const ROWS = 41;
 const LINE_STEPS = 40;
 const LINE_MAX_DEG = 40;
+const LABEL_MM = [7, 3]; // room for a label of a line
 const PROGRESSIVE_GRID = 61;
 const COLOURED = 0.97; // share of the lens whose values the colours span
 const PROGRESSIVE_HALF_MM = 28;
@@ -188,13 +189,21 @@ export function mapsSection(store: Store, wanted: () => boolean): MapsSection {
     const dy = f.halfY / (m - 1);
     const path = `M${f.outline.map((p) => p.map((v) => v.toFixed(2)).join(" ")).join("L")}Z`;
     const labels: SVGElement[] = [];
-    const lines = levels.map((level) => {
+    // Each level's label at its line, a sixth of a turn on from the last, clear of the others.
+    const placed: [number, number][] = [];
+    const clear = ([x, y]: [number, number]): boolean =>
+      placed.every(([a, b]) => Math.abs(x - a) > LABEL_MM[0] || Math.abs(y - b) > LABEL_MM[1]);
+    const lines = levels.map((level, turn) => {
+      const toward = -0.7 - (turn * Math.PI) / 3;
+      const off = ([x, y]: [number, number]): number => -Math.cos(Math.atan2(y, x) - toward);
       const segments = isoLine(f.grid, level);
       const spot = segments
         .map(([a, b, c, d]) => at((a + c) / 2, (b + d) / 2))
         .filter(([x, y]) => inside(x * 1.12, y * 1.12, f.outline))
-        .sort((p, q) => Math.abs(Math.atan2(p[1], p[0]) + 0.7) - Math.abs(Math.atan2(q[1], q[0]) + 0.7))[0];
+        .sort((p, q) => off(p) - off(q))
+        .find(clear);
       if (spot) {
+        placed.push(spot);
         labels.push(s("text", { x: spot[0], y: spot[1] + 0.8, "text-anchor": "middle" },
           f.signed ? signed(level, 2) : fixed(level, 2)));
       }

@@ -96,12 +96,15 @@ export function raysSection(store: Store, wanted: () => boolean): HTMLElement {
     controls.classList.toggle("observing", mode === "observer");
 
     const far = Math.min(1500, Math.max(80, Math.abs(focus ?? 1500) * 1.15));
+    // The whole lens, and in the wearer's view heights and lengths to one scale.
+    const half = Math.max(27, 1.06 * high, -1.06 * low);
+    const long = (half * W) / H;
     const frame: Frame =
       mode === "wearer"
-        ? { z0: -62, z1: 62, half: 27 }
+        ? { z0: -long, z1: long, half }
         : mode === "far"
-          ? { z0: -far, z1: (focus ?? -1) > 0 ? far : 0.35 * far, half: 27 }
-          : { z0: -Math.min(order.camera, 120) - 6, z1: 44, half: 27 };
+          ? { z0: -far, z1: (focus ?? -1) > 0 ? far : 0.35 * far, half }
+          : { z0: -Math.min(order.camera, 120) - 6, z1: 44, half };
     const x = (z: number): number => ((z - frame.z0) / (frame.z1 - frame.z0)) * W;
     const y = (height: number): number => H / 2 - (height / frame.half) * (H / 2);
     const at = (height: number, z: number): string => `${x(z).toFixed(2)} ${y(height).toFixed(2)}`;
