@@ -116,6 +116,10 @@ Result<PageServer> PageServer::Start(PageFiles files, const std::string& host, i
                               {"Cross-Origin-Resource-Policy", "same-origin"},
                               {"Cache-Control", "no-cache"}});
   server.set_pre_routing_handler([](const httplib::Request& request, httplib::Response& response) {
+    if (request.ranges.size() > 1) {  // thousands in one line would be answered by as many copies
+      response.status = 416;
+      return httplib::Server::HandlerResponse::Handled;
+    }
     if (request.method == "GET" || request.method == "HEAD") {
       return httplib::Server::HandlerResponse::Unhandled;
     }

@@ -126,6 +126,25 @@ TEST_F(PageServerTest, RefusesOversizedRequests) {
               Not(StartsWith("HTTP/1.1 200")));
 }
 
+TEST_F(PageServerTest, AnswersOneRangeAndRefusesSeveral) {
+  const PageServer server = Started();
+  const auto ask = [&](const std::string& range) {
+    return Ask(server.port(), "GET / HTTP/1.1\r\nHost: x\r\nConnection: close\r\nRange: bytes=" +
+                                  range + "\r\n\r\n");
+  };
+  const std::string one = ask("0-4");
+  EXPECT_THAT(one, StartsWith("HTTP/1.1 206"));
+  EXPECT_EQ(one.size() - one.find("\r\n\r\n"), 4 + 5u);
+  EXPECT_THAT(ask("99999999-"), StartsWith("HTTP/1.1 416"));
+  std::string many = "0-";
+  for (int i = 0; i < 1000; ++i) many += ",0-";
+  for (const std::string& several : {std::string("0-1,3-4"), many}) {
+    const std::string answer = ask(several);
+    EXPECT_THAT(answer, StartsWith("HTTP/1.1 416")) << several.substr(0, 20);
+    EXPECT_THAT(answer, Not(HasSubstr("<title>"))) << several.substr(0, 20);
+  }
+}
+
 TEST_F(PageServerTest, SurvivesWhatIsNotHttp) {
   const PageServer server = Started();
   std::vector<std::string> strange = {"\r\n\r\n", "GET\r\n\r\n", "hello\r\n\r\n",
