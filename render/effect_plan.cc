@@ -402,7 +402,11 @@ EffectPlan PlanEffects(const HeadScene& head, const PictureView& view, const Inp
           gloss.cwiseProduct(float(head.options.environment_scale) * head.brightest.greatest()),
           Eigen::Vector3f::Zero()),
       1);
-  add(Effect::kGrain, head.options.camera_look.grain_codes, 3);
+  // Blur moves half of an edge's contrast to either side; a frame is dark on skin.
+  const CameraLook& look = head.options.camera_look;
+  const double blur_codes =
+      AddedBlur(look) > kLeastBlur_px ? 0.5 * CodeChange(skin, Eigen::Vector3f::Zero()) : 0;
+  add(Effect::kGrain, std::max(look.grain_codes, blur_codes), 3);
 
   for (const EffectRegion region :
        {EffectRegion::kRightLens, EffectRegion::kLeftLens, EffectRegion::kRest}) {

@@ -19,11 +19,14 @@ float SmoothStep(double x, double from, double to) {
   return float(s * s * (3 - 2 * s));
 }
 
-// Reflectance toward grazing (Schlick 1994).
-Eigen::Vector3f Schlick(const Eigen::Vector3f& along_normal, float cosine) {
+// Reflectance toward grazing (Schlick 1994). A rough surface, whose lobe is wide, does not become a
+// mirror there: its facets hide each other.
+Eigen::Vector3f Schlick(const Eigen::Vector3f& along_normal, float cosine, float exponent) {
   const float off = 1 - cosine;
   const float rise = off * off * off * off * off;
-  return along_normal + rise * (Eigen::Vector3f::Ones() - along_normal);
+  const float roughness = std::sqrt(std::sqrt(2 / (exponent + 2)));
+  const Eigen::Vector3f most = along_normal.cwiseMax(1 - roughness);
+  return along_normal + rise * (most - along_normal);
 }
 
 // The normal that a tangent-space texture asks for. v of the texture runs downwards, its y up.
@@ -63,6 +66,7 @@ RayFollower::FramePoint RayFollower::FrameAt(const SceneHit& hit) const {
   at.normal.normalize();
   at.diffuse = material.diffuse;
   at.specular = material.specular;
+  at.exponent = material.shininess;
   at.passed.setZero();
   if (material.pbr == nullptr) return at;
   const PbrMaterial& pbr = *material.pbr;
@@ -76,7 +80,10 @@ RayFollower::FramePoint RayFollower::FrameAt(const SceneHit& hit) const {
   at.diffuse = (1 - metallic) * (1 - point.transmission) * point.base_color;
   at.passed = (1 - metallic) * point.transmission * point.base_color;
   at.cover = std::clamp(point.alpha, 0.0f, 1.0f);
-  if (pbr.metallic_roughness_texture) at.exponent = LobeExponent(point.roughness);
+  if (pbr.metallic_roughness_texture) {
+    at.exponent = LobeExponent(point.roughness);
+    at.own_lobe = false;
+  }
   return at;
 }
 
@@ -114,7 +121,7 @@ Eigen::Vector3f RayFollower::FramePasses(const SceneHit& hit, const Eigen::Vecto
   }
   const FramePoint at = FrameAt(hit);
   const Eigen::Vector3f mirrored =
-      Schlick(at.specular, std::min(std::abs(at.normal.dot(direction)), 1.0f));
+      Schlick(at.specular, std::min(std::abs(at.normal.dot(direction)), 1.0f), at.exponent);
   const Eigen::Vector3f through =
       at.cover * (Eigen::Vector3f::Ones() - mirrored).cwiseProduct(at.passed);
   return Eigen::Vector3f::Constant(1 - share * at.cover) + share * through;
@@ -172,10 +179,10 @@ Eigen::Vector3f RayFollower::Frame(const SceneHit& hit, const Eigen::Vector3f& p
       if (end.away) {
         const Eigen::Vector3f world = world_from_head_ * ray->direction;
         mirrored = float(head_.options.environment_scale) *
-                   (at.exponent ? frame.GlossAt(*at.exponent, world)
-                                : frame.gloss[frame.gloss_of[part]].Radiance(world));
+                   (at.own_lobe ? frame.gloss[frame.gloss_of[part]].Radiance(world)
+                                : frame.GlossAt(at.exponent, world));
       }
-      colour += Schlick(at.specular, ray->cosine).cwiseProduct(mirrored);
+      colour += Schlick(at.specular, ray->cosine, at.exponent).cwiseProduct(mirrored);
     }
   }
   return share * at.cover * colour;

@@ -136,11 +136,6 @@ double MeasureBlur(const std::vector<float>& luma, int width, int height) {
   return std::sqrt(std::max(0.0, total2 - kDifference2));
 }
 
-// Standard deviation of the blur that the renderer's pictures lack, pixels.
-double AddedBlur(const CameraLook& look) {
-  return std::sqrt(std::max(0.0, look.blur_px * look.blur_px - kPixelBlur_px * kPixelBlur_px));
-}
-
 // A hash of a pixel, as a normal deviate (sum of four uniform ones).
 float Grain(std::uint32_t seed, std::uint32_t x, std::uint32_t y) {
   std::uint32_t h = seed ^ (x * 0x9E3779B1u) ^ (y * 0x85EBCA77u);
@@ -162,6 +157,10 @@ CameraLook MeasureCameraLook(const ImageRgbF& input) {
   const std::vector<float> luma = CodeLuma(input);
   return {MeasureGrain(luma, input.width, input.height),
           MeasureBlur(luma, input.width, input.height)};
+}
+
+double AddedBlur(const CameraLook& look) {
+  return std::sqrt(std::max(0.0, look.blur_px * look.blur_px - kPixelBlur_px * kPixelBlur_px));
 }
 
 int CameraLookReach(const CameraLook& look) { return int(std::ceil(3 * AddedBlur(look))) + 1; }
@@ -195,7 +194,6 @@ void ApplyCameraLook(const CameraLook& look, const std::vector<float>& coverage,
                 share.data() + std::size_t(y * width));
   }
   std::vector<float> soft = colour, near = share;
-  constexpr double kLeastBlur_px = 0.2;
   if (sigma > kLeastBlur_px) {
     soft = Blurred(colour, width, height, 3, sigma);
     near = Blurred(share, width, height, 1, sigma);

@@ -19,6 +19,10 @@ struct CameraLook {
   double blur_px = 0;      // standard deviation
 };
 CameraLook MeasureCameraLook(const ImageRgbF& input);
+// Standard deviation of the blur that the renderer's own pictures lack, pixels.
+double AddedBlur(const CameraLook& look);
+// Less than this is not added.
+inline constexpr double kLeastBlur_px = 0.2;
 
 // Softens the picture where `coverage` (one a pixel, 0..1: share of inserted surface that did not
 // come through the camera) rises or falls, and lays grain over it. The same seed gives the same

@@ -114,11 +114,12 @@ class RayFollower {
   // The frame's surface at a hit.
   struct FramePoint {
     Eigen::Vector3f normal;
-    Eigen::Vector3f diffuse;        // albedo
-    Eigen::Vector3f specular;       // reflectance along the normal
-    Eigen::Vector3f passed;         // share of what is not mirrored that goes through
-    float cover = 1;                // share that is there at all
-    std::optional<float> exponent;  // of the lobe; nullopt: the part's own
+    Eigen::Vector3f diffuse;   // albedo
+    Eigen::Vector3f specular;  // reflectance along the normal
+    Eigen::Vector3f passed;    // share of what is not mirrored that goes through
+    float cover = 1;           // share that is there at all
+    float exponent = 1;        // of the lobe
+    bool own_lobe = true;      // the part's, not a texture's
   };
   FramePoint FrameAt(const SceneHit& hit) const;
   struct GlossRay {

@@ -1,9 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "tracking/anchored_clip.h"
 
+#include <tbb/parallel_for.h>
+
 #include <algorithm>
 #include <cmath>
-#include <opencv2/core/utility.hpp>
 
 #include "base/check.h"
 #include "base/units.h"
@@ -195,11 +196,8 @@ void Anchorer::ChooseViews() {
 void Anchorer::MatchFrames() {
   sightings_.assign(in_.frames.size(), {});
   guesses_.assign(in_.frames.size(), Eigen::Isometry3d::Identity());
-  cv::parallel_for_({0, int(in_.frames.size())}, [this](const cv::Range& range) {
-    for (int i = range.start; i < range.end; ++i) {
-      const auto f = std::size_t(i);
-      if (Seen(f)) sightings_[f] = Match(f, &guesses_[f]);
-    }
+  tbb::parallel_for(std::size_t(0), in_.frames.size(), [this](std::size_t f) {
+    if (Seen(f)) sightings_[f] = Match(f, &guesses_[f]);
   });
 }
 

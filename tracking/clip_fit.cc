@@ -1,9 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "tracking/clip_fit.h"
 
+#include <tbb/parallel_for.h>
+
 #include <algorithm>
 #include <cmath>
-#include <opencv2/core/utility.hpp>
 
 #include "base/check.h"
 #include "base/units.h"
@@ -223,13 +224,10 @@ ClipFit FitClip(const std::vector<FollowedFrame>& frames, const CanonicalMesh& c
   for (Eigen::Isometry3d& pose : poses) pose = turn.Rebased(pose);
   Pupils pupils = PupilsOf(points);
   std::vector<IrisReading> irises(frames.size());
-  cv::parallel_for_({0, int(frames.size())}, [&](const cv::Range& range) {
-    for (int i = range.start; i < range.end; ++i) {
-      const auto f = std::size_t(i);
-      if (landmarks[f] == nullptr) continue;
-      irises[f].right = FindIris(frames[f].right_eye, track.camera, poses[f], pupils.right, pd_mm);
-      irises[f].left = FindIris(frames[f].left_eye, track.camera, poses[f], pupils.left, pd_mm);
-    }
+  tbb::parallel_for(std::size_t(0), frames.size(), [&](std::size_t f) {
+    if (landmarks[f] == nullptr) return;
+    irises[f].right = FindIris(frames[f].right_eye, track.camera, poses[f], pupils.right, pd_mm);
+    irises[f].left = FindIris(frames[f].left_eye, track.camera, poses[f], pupils.left, pd_mm);
   });
   if (const auto seen = SummariseIrises(irises, track.camera, poses, pupils)) {
     track.iris_pd_mm = seen->pd_mm;

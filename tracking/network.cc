@@ -20,6 +20,8 @@ Result<OnnxNetwork> OnnxNetwork::Load(const std::string& path, int pixels,
   std::vector<cv::Mat> outputs;
   try {
     network.net_ = cv::dnn::readNetFromONNX(path);
+    // On one thread: sums that are split among threads round differently on another machine.
+    cv::setNumThreads(1);
     network.net_.setPreferableBackend(cv::dnn::DNN_BACKEND_OPENCV);
     network.net_.setPreferableTarget(cv::dnn::DNN_TARGET_CPU);
     names = network.net_.getUnconnectedOutLayersNames();

@@ -26,7 +26,7 @@ LIBRARIES = {
     "fmt/": EVERYWHERE,
     "hwy/": ["optics"],
     "nlohmann/": ["base", "geometry", "tracking", "render", "validation", "apps", "web"],
-    "tbb/": ["base", "render", "validation", "apps"],
+    "tbb/": ["base", "tracking", "render", "validation", "apps"],
     "CGAL/": ["geometry"],
     "boost/": ["geometry"],
     "tiny_gltf": ["geometry"],
