@@ -9,12 +9,32 @@
 namespace lorgnette {
 namespace {
 constexpr int kMostPixels = 8192;  // a side
+
+// Whether each chunk of a PNG lies within the file (PNG specification, 5.3). The decoder would take
+// the length that a chunk states for memory and time. Other formats pass.
+bool ChunksFit(std::string_view bytes) {
+  constexpr std::string_view kSignature("\x89PNG\r\n\x1a\n", 8);
+  if (!bytes.starts_with(kSignature)) return true;
+  constexpr std::size_t kAround = 12;  // length, type, check sum
+  std::size_t at = kSignature.size();
+  while (bytes.size() - at >= kAround) {
+    std::size_t length = 0;
+    for (std::size_t k = 0; k < 4; ++k) {
+      length = length << 8 | static_cast<unsigned char>(bytes[at + k]);
+    }
+    if (length > bytes.size() - at - kAround) return false;
+    if (bytes.substr(at + 4, 4) == "IEND") return true;
+    at += kAround + length;
+  }
+  return true;
 }
+
+}  // namespace
 
 Result<Texture> DecodeTexture(std::string_view bytes, const std::string& name) {
   tinygltf::Image image;
   std::string error, warning;
-  if (bytes.empty() || bytes.size() > 256u << 20 ||
+  if (bytes.empty() || bytes.size() > 256u << 20 || !ChunksFit(bytes) ||
       !tinygltf::LoadImageData(&image, 0, &error, &warning, 0, 0,
                                reinterpret_cast<const unsigned char*>(bytes.data()),
                                int(bytes.size()), nullptr)) {

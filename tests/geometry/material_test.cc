@@ -9,6 +9,7 @@
 #include "geometry/frame_material.h"
 #include "geometry/model_file.h"
 #include "geometry/mtl_file.h"
+#include "geometry/texture_file.h"
 
 namespace lorgnette {
 namespace {
@@ -115,6 +116,17 @@ TEST(ParseObj, TakesMaterialsUvsAndTellsWhatIsMissing) {
   EXPECT_THAT(model->notes,
               testing::UnorderedElementsAre(testing::HasSubstr("picture left out"),
                                             testing::HasSubstr("materials left out")));
+}
+
+TEST(Texture, AChunkLongerThanItsFileIsRefused) {
+  // A header, and a data chunk that states 1.9 GB.
+  const char bytes[] =
+      "\x89PNG\r\n\x1a\n"
+      "\0\0\0\x0dIHDR\0\0\0\x10\0\0\0\x08\x08\x02\0\0\0\x7f\x14\xe8\xc0"
+      "\x72\0\0\x50IDAT\xf1\0\xed\xf3";
+  const auto refused = DecodeTexture(std::string_view(bytes, sizeof bytes - 1), "a.png");
+  ASSERT_FALSE(refused);
+  EXPECT_EQ(refused.error().message.rfind("a.png: got no picture", 0), 0u);
 }
 
 }  // namespace
