@@ -346,7 +346,6 @@ EffectPlan PlanEffects(const HeadScene& head, const PictureView& view, const Inp
   EffectPlan plan;
   const double samples =
       double(head.options.samples_per_side) * double(head.options.samples_per_side);
-  Eigen::Vector3f darkest = Eigen::Vector3f::Constant(1e9f);
   for (std::size_t lens = 0; lens < head.lenses.size(); ++lens) {
     const LensSurvey s = surveyor.Survey(lens);
     const EffectRegion region = lens == 0 ? EffectRegion::kRightLens : EffectRegion::kLeftLens;
@@ -377,7 +376,6 @@ EffectPlan PlanEffects(const HeadScene& head, const PictureView& view, const Inp
     const bool coated = !head.looks[lens].front.bare() || !head.looks[lens].back.bare();
     add(Effect::kCoating, 0, coated ? s.coating : none, 0.05 * ray_ms);
     add(Effect::kTint, 0, head.looks[lens].tint.clear() ? none : s.tint, 0.05 * ray_ms);
-    if (s.visible > 0) darkest = darkest.cwiseMin(s.darkest);
   }
   // Skin and frame. The darkest skin is not looked for: a shadow may take all there is.
   const Eigen::Vector3f skin = view.face_brightest();
