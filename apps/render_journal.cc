@@ -6,6 +6,7 @@
 #include <zlib.h>
 
 #include <algorithm>
+#include <array>
 #include <cerrno>
 #include <cstring>
 #include <filesystem>
@@ -24,11 +25,9 @@ struct FileHeader {
   std::uint64_t key;
 };
 
-// Bounds of the pixels that differ.
-struct Box {
-  std::int32_t x0, y0, width, height;
-};
-Box Changed(const ImageRgb8& a, const ImageRgb8& b) {
+// Bounds of the pixels that differ: x0, y0, width, height.
+using JournalBox = std::array<std::int32_t, 4>;
+JournalBox Changed(const ImageRgb8& a, const ImageRgb8& b) {
   int x0 = a.width, y0 = a.height, x1 = -1, y1 = -1;
   for (int y = 0; y < a.height; ++y) {
     const std::uint8_t *p = a.at(0, y), *q = b.at(0, y);
@@ -51,7 +50,7 @@ Box Changed(const ImageRgb8& a, const ImageRgb8& b) {
 // Stands before each record's compressed bytes.
 struct RenderJournal::Header {
   std::int64_t frame;
-  Box box;
+  JournalBox box;
   std::int64_t lens, frame_pixels, shadowed, filled;
   std::uint32_t effects[3];
   std::uint32_t bytes, check;  // of the compressed difference; CRC-32 of it
@@ -124,22 +123,22 @@ std::optional<FrameTally> RenderJournal::Restore(long frame, ImageRgb8& picture)
       std::fread(&header, sizeof header, 1, file) != 1) {
     return std::nullopt;
   }
-  const Box& box = header.box;
-  if (box.x0 < 0 || box.y0 < 0 || box.width < 0 || box.height < 0 ||
-      box.width > picture.width - box.x0 || box.height > picture.height - box.y0) {
+  const auto [x0, y0, width, height] = header.box;
+  if (x0 < 0 || y0 < 0 || width < 0 || height < 0 || width > picture.width - x0 ||
+      height > picture.height - y0) {
     return std::nullopt;
   }
   std::vector<std::uint8_t> packed(header.bytes);
-  const std::size_t row = 3 * std::size_t(box.width);
-  std::vector<std::uint8_t> plain(row * std::size_t(box.height));
+  const std::size_t row = 3 * std::size_t(width);
+  std::vector<std::uint8_t> plain(row * std::size_t(height));
   uLongf size = uLongf(plain.size());
   if (std::fread(packed.data(), 1, packed.size(), file) != packed.size() ||
       (!plain.empty() && (uncompress(plain.data(), &size, packed.data(), packed.size()) != Z_OK ||
                           size != plain.size()))) {
     return std::nullopt;
   }
-  for (int y = 0; y < box.height; ++y) {
-    std::uint8_t* out = picture.at(box.x0, box.y0 + y);
+  for (int y = 0; y < height; ++y) {
+    std::uint8_t* out = picture.at(x0, y0 + y);
     const std::uint8_t* change = plain.data() + std::size_t(y) * row;
     for (std::size_t i = 0; i < row; ++i) out[i] = std::uint8_t(out[i] ^ change[i]);
   }
@@ -162,12 +161,12 @@ Status RenderJournal::Keep(long frame, const ImageRgb8& input, const ImageRgb8& 
   header.shadowed = tally.counts.shadowed_pixels;
   header.filled = tally.counts.filled_samples;
   std::copy_n(tally.effects.begin(), 3, header.effects);
-  const Box& box = header.box;
+  const auto [x0, y0, width, height] = header.box;
   std::vector<std::uint8_t> plain;
-  plain.reserve(3 * std::size_t(box.width) * std::size_t(box.height));
-  for (int y = 0; y < box.height; ++y) {
-    const std::uint8_t *a = input.at(box.x0, box.y0 + y), *b = drawn.at(box.x0, box.y0 + y);
-    for (int i = 0; i < 3 * box.width; ++i) plain.push_back(std::uint8_t(a[i] ^ b[i]));
+  plain.reserve(3 * std::size_t(width) * std::size_t(height));
+  for (int y = 0; y < height; ++y) {
+    const std::uint8_t *a = input.at(x0, y0 + y), *b = drawn.at(x0, y0 + y);
+    for (int i = 0; i < 3 * width; ++i) plain.push_back(std::uint8_t(a[i] ^ b[i]));
   }
   uLongf size = compressBound(uLong(plain.size()));
   std::vector<std::uint8_t> packed(size);

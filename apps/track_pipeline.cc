@@ -15,14 +15,14 @@
 namespace lorgnette {
 namespace {
 
-constexpr std::size_t kFramesInFlight = 4;
+constexpr std::size_t kFramesReadAhead = 4;
 
 // Decodes the frames of a range (and rectifies them) on a thread of its own.
 class DecodingThread {
  public:
   DecodingThread(VideoReader& reader, const FrameRange& range,
                  const std::optional<PictureRectifier>& rectifier)
-      : queue_(kFramesInFlight), thread_([this, &reader, &range, &rectifier] {
+      : queue_(kFramesReadAhead), thread_([this, &reader, &range, &rectifier] {
           for (; number_ <= range.last; ++number_) {
             auto frame = reader.Next();
             if (!frame) {
@@ -32,7 +32,6 @@ class DecodingThread {
             if (!*frame) break;
             if (!range.Contains(number_)) continue;
             if (rectifier) (*frame)->rgb = rectifier->Rectified((*frame)->rgb);
-            (*frame)->original.reset();
             if (!queue_.Push(**std::move(frame))) break;
           }
           queue_.End();
@@ -75,7 +74,7 @@ std::string DefaultModelDirectory() {
 }
 
 Result<HeadTrack> TrackVideo(const TrackRequest& request) {
-  LG_ASSIGN(VideoReader reader, VideoReader::Open(request.video));
+  LG_ASSIGN(VideoReader reader, VideoReader::Open(request.video, {.keep_originals = false}));
   TrackerOptions options;
   options.model_dir = request.model_dir.empty() ? DefaultModelDirectory() : request.model_dir;
   options.pd_mm = request.pd_mm;

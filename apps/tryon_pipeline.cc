@@ -91,7 +91,7 @@ Result<Environment> LitLikeTheFace(const TryonRequest& request, const HeadTrack&
   if (!path.empty()) {
     LG_ASSIGN(detail, Environment::Read(path));
   }
-  LG_ASSIGN(VideoReader reader, VideoReader::Open(request.video));
+  LG_ASSIGN(VideoReader reader, VideoReader::Open(request.video, {.keep_originals = false}));
   const TrackLookup lookup(track, reader.info().frame_rate);
   while (true) {
     LG_ASSIGN(const std::optional<VideoFrame> frame, reader.Next());
@@ -116,7 +116,7 @@ Result<Environment> LitLikeTheFace(const TryonRequest& request, const HeadTrack&
 // Cuts a track down to the frames of a range of the video, and says when one is missing. What the
 // frames' times are, only the video knows.
 Status KeepRange(const TryonRequest& request, HeadTrack& track) {
-  LG_ASSIGN(VideoReader reader, VideoReader::Open(request.video));
+  LG_ASSIGN(VideoReader reader, VideoReader::Open(request.video, {.keep_originals = false}));
   const TrackLookup lookup(track, reader.info().frame_rate);
   std::vector<TrackedFrame> kept;
   long number = 0;

@@ -5,11 +5,13 @@
 
 #include <cmath>
 #include <compare>
+#include <limits>
 #include <numbers>
 
 namespace lorgnette {
 
 inline constexpr double kPi = std::numbers::pi;
+inline constexpr double kInfinity = std::numeric_limits<double>::infinity();
 inline constexpr double RadiansFromDegrees(double degrees) { return degrees * (kPi / 180.0); }
 inline constexpr double DegreesFromRadians(double radians) { return radians * (180.0 / kPi); }
 

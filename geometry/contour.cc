@@ -6,6 +6,7 @@
 #include <cmath>
 #include <limits>
 
+#include "base/linear_algebra.h"
 #include "base/units.h"
 #include "geometry/closed_curve.h"
 #include "geometry/silhouette.h"
@@ -13,7 +14,6 @@
 namespace lorgnette {
 namespace {
 
-constexpr double kInfinity = std::numeric_limits<double>::infinity();
 constexpr double kToolingPower = 530;  // D * mm: 1000 (1.530 - 1)
 constexpr int kPlaneRounds = 4;
 constexpr double kEdgeDepth_mm = 0.15;    // points so near to a lens' outermost one are of its edge
@@ -249,7 +249,7 @@ Result<LensOpening> TraceShape(const TriangleMesh& front, const Eigen::Isometry3
     for (const Eigen::Vector3d& p : points) mean += p.z() / double(points.size());
     const Eigen::Vector3d normal = Eigen::Vector3d(-plane[1], -plane[2], 1).normalized();
     frame_from_opening = frame_from_opening * Eigen::Translation3d(centre.x(), centre.y(), mean) *
-                         Eigen::Quaterniond::FromTwoVectors(Eigen::Vector3d::UnitZ(), normal);
+                         ShortestTurn(Eigen::Vector3d::UnitZ(), normal);
   }
   // Turn about the axis so that +x stays level: the opening's x axis has no y in the frame.
   const Eigen::Vector3d z = frame_from_opening.linear().col(2);

@@ -18,7 +18,6 @@ namespace {
 
 constexpr double kBevelShare = 1.0 / 3;  // of the edge, from the front: where a bevel looks best
 constexpr double kOnEdge = 1e-9;         // a ray through a corner meets one of its edges at least
-constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
 double DegreesOf(const Eigen::Vector2d& p) {
   const double degrees = DegreesFromRadians(std::atan2(p.y(), p.x()));

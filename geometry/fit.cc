@@ -26,9 +26,8 @@ constexpr double kWidthNote_mm = 4;
 constexpr double kSwingMost_deg = 8, kBowMost_mm = 8;
 constexpr std::size_t kCanonicalVertices = 468, kRightSide = 234, kLeftSide = 454;
 constexpr double kShiftStep_mm = 0.5;
-constexpr double kShiftWorth = 0.02;  // of 1 mm^2 of pad shift: bend no more than it is worth
-constexpr double kSizeWorth = 0.05;   // of 1 mm^2 of another bridge size
-constexpr double kInfinity = std::numeric_limits<double>::infinity();
+constexpr double kShiftWorth = 0.02;     // of 1 mm^2 of pad shift: bend no more than it is worth
+constexpr double kSizeWorth = 0.05;      // of 1 mm^2 of another bridge size
 constexpr std::size_t kFrontStride = 3;  // of the front's vertices that are tested against the skin
 
 // Frame points in frame coordinates that the skin must not pass.

@@ -144,8 +144,8 @@ std::vector<std::vector<int>> BoundaryLoops(const TriangleMesh& mesh,
 }
 
 bool FillHole(TriangleMesh& mesh, const std::vector<int>& loop) {
-  using Kernel = CGAL::Exact_predicates_inexact_constructions_kernel;
-  std::vector<Kernel::Point_3> points;
+  using HoleKernel = CGAL::Exact_predicates_inexact_constructions_kernel;
+  std::vector<HoleKernel::Point_3> points;
   double length = 0;
   for (std::size_t i = 0; i < loop.size(); ++i) {
     const Eigen::Vector3d& p = mesh.positions[std::size_t(loop[i])];

@@ -6,10 +6,10 @@
 #include <limits>
 #include <queue>
 
+#include "base/units.h"
+
 namespace lorgnette {
 namespace {
-
-constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
 // A mesh drawn along z into cells, and the empty regions it encloses.
 class Silhouette {

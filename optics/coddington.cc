@@ -4,7 +4,8 @@
 #include <Eigen/Geometry>
 #include <Eigen/LU>
 #include <cmath>
-#include <limits>
+
+#include "base/units.h"
 
 namespace lorgnette {
 namespace {
@@ -14,7 +15,6 @@ using Eigen::Matrix3d;
 using Eigen::Vector3d;
 using Basis = Eigen::Matrix<double, 3, 2>;
 
-constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
 // What refracts at one surface: bend turned so that its normal goes along the light.
 struct Interface {

@@ -4,6 +4,7 @@
 #include <Eigen/Geometry>
 #include <cmath>
 
+#include "base/linear_algebra.h"
 #include "optics/coddington.h"
 #include "optics/trace.h"
 
@@ -21,8 +22,7 @@ Eigen::Vector3d Gaze::Direction() const {
 }
 
 Eigen::Matrix3d ListingRotation(const Eigen::Vector3d& direction) {
-  return Eigen::Quaterniond::FromTwoVectors(-Eigen::Vector3d::UnitZ(), direction)
-      .toRotationMatrix();
+  return ShortestTurn(-Eigen::Vector3d::UnitZ(), direction).toRotationMatrix();
 }
 
 GazeVergence EvaluateGaze(const Lens& lens, double index, const EyePose& eye, const Gaze& gaze,

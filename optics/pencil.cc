@@ -8,6 +8,7 @@
 #include <cmath>
 #include <functional>
 
+#include "base/linear_algebra.h"
 #include "optics/trace.h"
 
 namespace lorgnette {
@@ -20,8 +21,7 @@ struct Screen {
   Eigen::Vector3d origin, x, y, z;
 
   explicit Screen(const Ray& chief) : origin(chief.origin), z(chief.direction) {
-    const Eigen::Quaterniond turn =
-        Eigen::Quaterniond::FromTwoVectors(Eigen::Vector3d::UnitZ(), chief.direction);
+    const Eigen::Quaterniond turn = ShortestTurn(Eigen::Vector3d::UnitZ(), chief.direction);
     x = turn * Eigen::Vector3d::UnitX();
     y = turn * Eigen::Vector3d::UnitY();
   }

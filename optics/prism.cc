@@ -13,7 +13,7 @@
 namespace lorgnette {
 namespace {
 
-constexpr int kMaxSteps = 30;
+constexpr int kMaxPrismSteps = 30;
 constexpr double kSingular_D = 1e-3;  // a power below it moves no prism within any lens
 
 }  // namespace
@@ -59,7 +59,7 @@ Result<Eigen::Vector2d> DecenterForPrism(const Lens& lens, const Eigen::Vector2d
     }
   }
   Eigen::Vector2d r(0, 0);
-  for (int i = 0; i < kMaxSteps; ++i) {
+  for (int i = 0; i < kMaxPrismSteps; ++i) {
     const auto at = PrismAt(lens, n, r);
     if (!at) return refuse("rays do not pass the lens there");
     const Eigen::Vector2d missing = prism - *at;

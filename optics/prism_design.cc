@@ -8,7 +8,7 @@
 namespace lorgnette {
 namespace {
 
-constexpr int kMaxSteps = 40;
+constexpr int kMaxDesignSteps = 40;
 constexpr double kSettled_mm = 1e-10;
 constexpr int kRoundPoints = 720;  // a 60 mm circle to 0.3 micrometres
 
@@ -39,7 +39,7 @@ Result<PrismDesign> DesignWithPrism(const LensOrder& order, double max_decentrat
   const std::vector<Eigen::Vector2d> contour = ContourOf(order);
   LensOrder centred = order;
   centred.rx.prism_in = centred.rx.prism_up = PrismDiopters(0);
-  for (int i = 0; i < kMaxSteps; ++i) {
+  for (int i = 0; i < kMaxDesignSteps; ++i) {
     centred.contour_mm = contour;
     for (Eigen::Vector2d& p : centred.contour_mm) p += made.reference_point_mm;
     auto design = DesignLens(centred);

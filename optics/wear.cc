@@ -10,7 +10,7 @@
 namespace lorgnette {
 namespace {
 
-constexpr int kMaxSteps = 40;
+constexpr int kMaxWearSteps = 40;
 constexpr double kMaxTilt_deg = 45;
 
 double Size(const PowerVector& p) {
@@ -67,7 +67,7 @@ Result<WearCompensation> CompensateForWear(const LensOrder& order, double refrac
   LensOrder made = order;
   made.vertex_distance_mm = wear.vertex_distance_mm;
   PowerVector asked = result.target;
-  for (int i = 0; i < kMaxSteps; ++i) {
+  for (int i = 0; i < kMaxWearSteps; ++i) {
     const SphereCylinder form =
         order.rx.cylinder > Diopters(0) ? PlusCylinderForm(asked) : MinusCylinderForm(asked);
     made.rx.sphere = form.sphere;

@@ -9,33 +9,17 @@
 
 #include "base/check.h"
 #include "base/units.h"
-#include "optics/trace.h"
+#include "render/adaptive_samples.h"
 #include "render/color.h"
+#include "render/embree_scene.h"
 #include "render/head_scene.h"
+#include "render/hit_map.h"
 #include "render/ray_follower.h"
 #include "render/tile_mask.h"
 #include "render/tile_renderer.h"
 
 namespace lorgnette {
 namespace {
-
-constexpr float kInfinity = std::numeric_limits<float>::infinity();
-// First glass on a ray of head space.
-struct Entry {
-  std::size_t lens;
-  Ray ray;  // lens frame
-  SolidHit hit;
-};
-std::optional<Entry> FirstGlass(const HeadScene& head, const Ray& ray) {
-  std::optional<Entry> nearest;
-  for (std::size_t i = 0; i < head.lenses.size(); ++i) {
-    const Eigen::Isometry3d& m = head.lenses[i].lens_from_head();
-    const Ray local{m * ray.origin, m.linear() * ray.direction};
-    const auto hit = head.lenses[i].Enter(local);
-    if (hit && (!nearest || hit->distance < nearest->hit.distance)) nearest = Entry{i, local, *hit};
-  }
-  return nearest;
-}
 
 // What the samples of one pixel sum to.
 struct PixelSum {
@@ -55,110 +39,6 @@ struct PixelSum {
     direct += share * s.direct;
   }
 };
-
-// Samples of the pixels that `wanted` names (all of them when it is empty), side x side a pixel, in
-// blocks of pixels that fill a packet of 16.
-void PlaceSamples(const PixelBox& area, int side, const std::vector<bool>& wanted,
-                  std::vector<CameraSample>& samples) {
-  samples.clear();
-  const int block = std::max(1, 4 / side);
-  for (int by = area.y0; by < area.y1; by += block) {
-    for (int bx = area.x0; bx < area.x1; bx += block) {
-      for (int y = by; y < std::min(by + block, area.y1); ++y) {
-        for (int x = bx; x < std::min(bx + block, area.x1); ++x) {
-          const int pixel = (y - area.y0) * kTileSide + (x - area.x0);
-          if (!wanted.empty() && !wanted[std::size_t(pixel)]) continue;
-          for (int s = 0; s < side * side; ++s) {
-            CameraSample sample;
-            sample.x = float(x) + (float(s % side) + 0.5f) / float(side);
-            sample.y = float(y) + (float(s / side) + 0.5f) / float(side);
-            sample.pixel = std::uint16_t(pixel);
-            samples.push_back(sample);
-          }
-        }
-      }
-    }
-  }
-}
-
-// Adaptive: what the ray through a pixel's centre met, and how bright it was, encoded.
-struct Glance {
-  CameraSample::Kind kind = CameraSample::Kind::kBackground;
-  std::uint8_t code = 0;
-};
-
-// Pixels of the frame that differ from a neighbour by more than this many code values take all
-// their samples.
-constexpr int kFrameContrast = 6;
-
-// Pixels whose neighbourhood meets different things, and those of the frame with some contrast.
-std::vector<bool> PixelsToRefine(const PixelBox& area, int width, int height,
-                                 const std::vector<Glance>& glances) {
-  using Kind = CameraSample::Kind;
-  std::vector<bool> wanted(std::size_t(kTileSide) * kTileSide, false);
-  const auto at = [&](int x, int y) {
-    return glances[std::size_t(std::clamp(y, 0, height - 1)) * std::size_t(width) +
-                   std::size_t(std::clamp(x, 0, width - 1))];
-  };
-  for (int y = area.y0; y < area.y1; ++y) {
-    for (int x = area.x0; x < area.x1; ++x) {
-      const Glance own = at(x, y);
-      bool refine = own.kind == Kind::kLensElsewhere;
-      for (int dy = -1; dy <= 1 && !refine; ++dy) {
-        for (int dx = -1; dx <= 1 && !refine; ++dx) {
-          const Glance other = at(x + dx, y + dy);
-          refine = other.kind != own.kind ||
-                   (own.kind == Kind::kFrame &&
-                    std::abs(int(own.code) - int(other.code)) > kFrameContrast);
-        }
-      }
-      wanted[std::size_t((y - area.y0) * kTileSide + (x - area.x0))] = refine;
-    }
-  }
-  return wanted;
-}
-
-// Adaptive, where only the face's shadow falls: samples lie on every second column and row of the
-// tile and on its last ones.
-bool OnShadowGrid(int x, int y) {
-  const auto on = [](int v) { return v % 2 == 0 || v == kTileSide - 1; };
-  return on(x) && on(y);
-}
-
-// The pixels between those of the grid take the mean of their neighbours on it, where these met the
-// same thing and their factors differ by less than a code value or two; `wanted` receives the
-// others. `factor` and `kind` hold a tile's pixels.
-constexpr float kShadowContrast = 0.02f;
-void FillShadowGrid(const PixelBox& area, std::vector<Eigen::Vector3f>& factor,
-                    const std::vector<CameraSample::Kind>& kind, std::vector<bool>& wanted) {
-  wanted.assign(std::size_t(kTileSide) * kTileSide, false);
-  const int width = area.x1 - area.x0, height = area.y1 - area.y0;
-  for (int y = 0; y < height; ++y) {
-    for (int x = 0; x < width; ++x) {
-      if (OnShadowGrid(x, y)) continue;
-      const std::size_t own = std::size_t(y * kTileSide + x);
-      const int dx = x % 2 != 0 && x != kTileSide - 1 ? 1 : 0;
-      const int dy = y % 2 != 0 && y != kTileSide - 1 ? 1 : 0;
-      if (x + dx >= width || y + dy >= height) {
-        wanted[own] = true;
-        continue;
-      }
-      const std::size_t corners[4] = {
-          std::size_t((y - dy) * kTileSide + x - dx), std::size_t((y - dy) * kTileSide + x + dx),
-          std::size_t((y + dy) * kTileSide + x - dx), std::size_t((y + dy) * kTileSide + x + dx)};
-      Eigen::Vector3f low = factor[corners[0]], high = low, sum = Eigen::Vector3f::Zero();
-      bool alike = true;
-      for (const std::size_t c : corners) {
-        low = low.cwiseMin(factor[c]);
-        high = high.cwiseMax(factor[c]);
-        sum += factor[c];
-        alike = alike && kind[c] == kind[corners[0]];
-      }
-      wanted[own] = !alike || (high - low).maxCoeff() > kShadowContrast;
-      factor[own] = 0.25f * sum;
-    }
-  }
-}
 
 }  // namespace
 
@@ -459,60 +339,7 @@ EffectPlan Compositor::Plan(const InputPicture& input, const Camera& camera,
 
 ImageRgbaF Compositor::HitMap(const Camera& camera,
                               const Eigen::Isometry3d& camera_from_head) const {
-  const HeadScene& head = scene_->head;
-  const Eigen::Isometry3d head_from_camera = camera_from_head.inverse();
-  ImageRgbaF map(camera.width, camera.height);
-  tbb::parallel_for(0, camera.height, [&](int row) {
-    for (int column = 0; column < camera.width; ++column) {
-      const Ray ray{
-          head_from_camera.translation(),
-          (head_from_camera.linear() * camera.Direction(column + 0.5, row + 0.5)).normalized()};
-      const auto trace = [&](RaySet set, const Ray& r, double far) {
-        return head.scene.Intersect(set, r.origin.cast<float>(), r.direction.cast<float>(), 0,
-                                    float(far));
-      };
-      float* out = map.at(column, row);
-      const auto write = [&](HitCode code) { out[3] = float(code); };
-      const SceneHit direct = trace(RaySet::kAll, ray, kInfinity);
-      const auto glass = FirstGlass(head, ray);
-      if (!glass || (direct.hit() && double(direct.distance) < glass->hit.distance)) {
-        write(!direct.hit()                          ? HitCode::kBackground
-              : direct.object == SceneObject::kFrame ? HitCode::kFrame
-                                                     : HitCode::kHead);
-        continue;
-      }
-      const LensSolid& solid = head.lenses[glass->lens];
-      const double index = solid.lens().medium.index_d;
-      const auto in = Refract(glass->ray.direction, glass->hit.normal, 1 / index);
-      const Ray inside{glass->hit.point, in->normalized()};
-      const auto leave = solid.Leave(inside);
-      const Eigen::Isometry3d& m = solid.head_from_lens();
-      if (leave &&
-          trace(RaySet::kFrame, {m * inside.origin, m.linear() * inside.direction}, leave->distance)
-              .hit()) {
-        write(HitCode::kFrame);
-        continue;
-      }
-      const auto exit = leave ? Refract(inside.direction, leave->normal, index) : std::nullopt;
-      if (!exit || glass->hit.face == SolidFace::kWall || leave->face == SolidFace::kWall ||
-          leave->face == glass->hit.face) {
-        write(HitCode::kEdge);
-        continue;
-      }
-      const Ray leaving{m * leave->point, m.linear() * exit->normalized()};
-      const SceneHit end = trace(RaySet::kAll, leaving, kInfinity);
-      if (!end.hit()) {
-        write(HitCode::kLensToBackground);
-      } else if (end.object == SceneObject::kFrame) {
-        write(HitCode::kFrame);
-      } else {
-        const Eigen::Vector3d point = leaving.origin + double(end.distance) * leaving.direction;
-        for (int k = 0; k < 3; ++k) out[k] = float(point[k]);
-        write(glass->lens == 0 ? HitCode::kRightLensToHead : HitCode::kLeftLensToHead);
-      }
-    }
-  });
-  return map;
+  return TraceHitMap(scene_->head, camera, camera_from_head);
 }
 
 double Compositor::MatchExposure(const InputPicture& input, const Camera& camera,

@@ -5,6 +5,7 @@
 
 #include <Eigen/Core>
 #include <cstdint>
+#include <limits>
 #include <memory>
 #include <vector>
 
@@ -19,6 +20,9 @@ enum class SceneObject : std::uint32_t {
   kFrame = 2,
   kNone = 0xffffffffu
 };
+
+// The length of a ray that nothing cuts short.
+inline constexpr float kEndless = std::numeric_limits<float>::infinity();
 
 // Which objects a ray can meet.
 enum class RaySet { kAll, kHead, kFrame };

@@ -18,7 +18,6 @@
 namespace lorgnette {
 namespace {
 
-constexpr int kMaxSide = 1 << 16;        // a larger data window is a broken or hostile file
 constexpr long kMostPixelsAByte = 4096;  // of the file; the tightest compression packs hundreds
 constexpr float kHalfMax = 65504.0f;
 

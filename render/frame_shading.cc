@@ -7,12 +7,11 @@
 #include <limits>
 
 #include "base/units.h"
+#include "render/embree_scene.h"
 #include "render/ray_follower.h"
 
 namespace lorgnette {
 namespace {
-
-constexpr float kInfinity = std::numeric_limits<float>::infinity();
 
 float SmoothStep(double x, double from, double to) {
   const double s = std::clamp((x - from) / (to - from), 0.0, 1.0);
@@ -143,7 +142,7 @@ GlossEnd RayFollower::EndOf(const GlossRay& ray) const {
   // Smooth normals mirror rays into the flat triangles beside them.
   constexpr float kOwnTriangles_mm = 2;
   const SceneHit hit =
-      head_.scene.Intersect(RaySet::kAll, ray.origin, ray.direction, kOwnTriangles_mm, kInfinity);
+      head_.scene.Intersect(RaySet::kAll, ray.origin, ray.direction, kOwnTriangles_mm, kEndless);
   if (!hit.hit()) return {true, Eigen::Vector3f::Zero()};
   if (hit.object == SceneObject::kFrame) return {};
   if (hit.object != SceneObject::kFace) return {false, picture_.face_mean()};

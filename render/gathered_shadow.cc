@@ -11,12 +11,12 @@
 
 #include "base/units.h"
 #include "optics/lens_kernel.h"
+#include "render/embree_scene.h"
 #include "render/visibility.h"
 
 namespace lorgnette {
 namespace {
 
-constexpr float kInfinity = std::numeric_limits<float>::infinity();
 // Rays start this far off the surface; those below the flat triangle are not followed.
 constexpr float kLift_mm = 0.02f;
 
@@ -110,7 +110,7 @@ void ThroughLens(const GatherScene& scene, std::size_t lens, LensRays& rays, Poi
                                rays.exit_columns[2][k]);
     const Eigen::Vector3f direction = head_from_lens * d_out;
     const Eigen::Vector3f start = head_from_lens * from + lens_in_head;
-    if (scene.scene.Occluded(RaySet::kAll, start, direction, 0, kInfinity)) continue;
+    if (scene.scene.Occluded(RaySet::kAll, start, direction, 0, kEndless)) continue;
     out.direct_with +=
         scene.environment_scale * rays.weight[k] *
         PassedBy(look, rays, k, d_in, d_out)
@@ -128,7 +128,7 @@ bool MayMeetLens(const GatherScene& scene, const Eigen::Vector3f& origin,
                               solid.lens_from_head().translation().cast<float>();
     const Eigen::Vector3f d = solid.lens_from_head().linear().cast<float>() * direction;
     if (!(d.z() < 0)) continue;  // from the eye's side outward
-    float t0 = 0, t1 = kInfinity;
+    float t0 = 0, t1 = kEndless;
     for (int k = 0; k < 3; ++k) {
       float a = (float(solid.low()[k]) - o[k]) / d[k], b = (float(solid.high()[k]) - o[k]) / d[k];
       if (a > b) std::swap(a, b);
@@ -189,7 +189,7 @@ PointLight GatherPoint(const GatherScene& scene, const LatticePoint& point) {
   for (const Above& at : packets) {
     const RayPacket& frame = at.rays;
     RayPacket head = frame;
-    std::fill_n(head.far, RayPacket::kSize, kInfinity);
+    std::fill_n(head.far, RayPacket::kSize, kEndless);
     scene.scene.Intersect16(RaySet::kHead, head);
     for (std::size_t k = 0; k < RayPacket::kSize; ++k) {
       if (!frame.valid[k]) continue;

@@ -13,8 +13,6 @@
 namespace lorgnette {
 namespace {
 
-constexpr int kMaxSide = 1 << 16;
-
 struct Rgbe {
   std::uint8_t r = 0, g = 0, b = 0, e = 0;
 };

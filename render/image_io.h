@@ -13,6 +13,9 @@ namespace lorgnette {
 
 enum class ExrDepth { kHalf, kFloat };
 
+// A longer side of a picture in linear light is a broken or hostile file.
+inline constexpr int kMaxSide = 1 << 16;
+
 // EXR with channels R, G, B (or Y alone, copied to all three). The picture covers the file's data
 // window; pixels are as stored, NaN included.
 Result<ImageRgbF> ReadExr(const std::string& path);

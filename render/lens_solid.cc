@@ -6,12 +6,12 @@
 #include <limits>
 
 #include "base/check.h"
+#include "base/units.h"
 #include "optics/trace.h"
 
 namespace lorgnette {
 namespace {
 
-constexpr double kInfinity = std::numeric_limits<double>::infinity();
 // A ray steeper than this against the axis can cross a surface twice inside the glass; the
 // surface's own intersection reports one crossing, so that such rays are scanned.
 constexpr double kSteep = 0.5;

@@ -7,14 +7,9 @@
 #include <utility>
 
 #include "render/directions.h"
+#include "render/visibility.h"
 
 namespace lorgnette {
-namespace {
-
-constexpr float kFrameLift_mm = 0.02f;
-constexpr float kFaceLift_mm = 0.3f;  // as the baked shadow: smooth normals over flat triangles
-
-}  // namespace
 
 PaperShadow::PaperShadow(int rays, bool sees_face) : sees_face_(sees_face) {
   for (std::uint32_t seed = 0; seed < kSets; ++seed) {

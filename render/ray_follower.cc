@@ -1,21 +1,21 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "render/ray_follower.h"
 
-#include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <cmath>
 #include <limits>
 
+#include "base/linear_algebra.h"
 #include "base/units.h"
 #include "optics/media.h"
 #include "optics/trace.h"
+#include "render/embree_scene.h"
 
 namespace lorgnette {
 namespace {
 
 // A ground edge scatters what reaches it; about half of a matt wall's light comes back.
 constexpr float kGroundEdgeAlbedo = 0.5f;
-constexpr float kInfinity = std::numeric_limits<float>::infinity();
 
 Ray Transformed(const Eigen::Isometry3d& to_from, const Ray& ray) {
   return {to_from * ray.origin, to_from.linear() * ray.direction};
@@ -29,11 +29,8 @@ float Minification(const LensSolid& lens, const Eigen::Isometry3d& camera_from_h
   const double behind = double(background_depth_mm) - to_camera;
   if (!(to_camera > 1) || !(behind > 1)) return 1;
   const Eigen::Vector2d power =
-      Eigen::SelfAdjointEigenSolver<Eigen::Matrix2d>(
-          (lens.lens().medium.index_d - 1) *
-              (lens.lens().front.VertexCurvature() - lens.lens().back.VertexCurvature()),
-          Eigen::EigenvaluesOnly)
-          .eigenvalues();
+      (lens.lens().medium.index_d - 1) * SymmetricEigenvalues(lens.lens().front.VertexCurvature() -
+                                                              lens.lens().back.VertexCurvature());
   const double reach = behind * to_camera / (behind + to_camera);
   return float((1 - reach * power.array()).abs().maxCoeff());
 }
@@ -182,7 +179,7 @@ Eigen::Vector3f RayFollower::Outside(const Ray& ray, double weight, int bounces,
                                      PixelState& pixel) const {
   const Eigen::Vector3f origin = ray.origin.cast<float>();
   const Eigen::Vector3f direction = ray.direction.cast<float>();
-  const SceneHit hit = head_.scene.Intersect(RaySet::kAll, origin, direction, 0, kInfinity);
+  const SceneHit hit = head_.scene.Intersect(RaySet::kAll, origin, direction, 0, kEndless);
   if (bounces <= head_.options.max_internal_bounces) {
     const auto glass = FirstGlass(ray);
     if (glass && (!hit.hit() || glass->hit.distance < double(hit.distance))) {
@@ -201,7 +198,7 @@ Eigen::Vector3f RayFollower::AtHit(const SceneHit& hit, const Eigen::Vector3f& o
   Eigen::Vector3f colour = Frame(hit, point, direction);
   const Eigen::Vector3f passed = FramePasses(hit, point, direction);
   if (passed.maxCoeff() > 0) {
-    const SceneHit behind = head_.scene.Intersect(RaySet::kHead, point, direction, 0, kInfinity);
+    const SceneHit behind = head_.scene.Intersect(RaySet::kHead, point, direction, 0, kEndless);
     colour +=
         passed.cwiseProduct(behind.hit() ? Head(behind, point + behind.distance * direction, pixel)
                                          : Miss(point, direction, transmitted, pixel));

@@ -7,87 +7,11 @@
 #include <limits>
 
 #include "optics/lens_kernel.h"
+#include "render/embree_scene.h"
+#include "render/ray_bundle.h"
 
 namespace lorgnette {
 namespace {
-
-constexpr float kInfinity = std::numeric_limits<float>::infinity();
-
-// Storage behind RayArrays.
-struct RayColumns {
-  std::array<std::vector<float>, 6> columns;
-  void Resize(std::size_t n) {
-    for (auto& c : columns) c.resize(n);
-  }
-  RayArrays<float> view() {
-    return {columns[0].data(), columns[1].data(), columns[2].data(),
-            columns[3].data(), columns[4].data(), columns[5].data()};
-  }
-  RayArrays<const float> const_view() const {
-    return {columns[0].data(), columns[1].data(), columns[2].data(),
-            columns[3].data(), columns[4].data(), columns[5].data()};
-  }
-  Eigen::Vector3f point(std::size_t i) const {
-    return {columns[0][i], columns[1][i], columns[2][i]};
-  }
-  Eigen::Vector3f vector(std::size_t i) const {
-    return {columns[3][i], columns[4][i], columns[5][i]};
-  }
-  void Set(std::size_t i, const Eigen::Vector3f& p, const Eigen::Vector3f& d) {
-    for (std::size_t k = 0; k < 3; ++k) {
-      columns[k][i] = p[Eigen::Index(k)];
-      columns[k + 3][i] = d[Eigen::Index(k)];
-    }
-  }
-};
-
-// Rays of head space, traced in packets against the scene.
-struct Bundle {
-  std::vector<Eigen::Vector3f> origins, directions;
-  std::vector<float> far;  // in: length; unused entries are absent, not masked
-  std::vector<SceneHit> hits;
-
-  void Clear() {
-    origins.clear();
-    directions.clear();
-    far.clear();
-  }
-  void Add(const Eigen::Vector3f& origin, const Eigen::Vector3f& direction,
-           float length = kInfinity) {
-    origins.push_back(origin);
-    directions.push_back(direction);
-    far.push_back(length);
-  }
-  void Fill(std::size_t first, RayPacket& packet) const {
-    const std::size_t n = origins.size();
-    for (std::size_t k = 0; k < RayPacket::kSize; ++k) {
-      const std::size_t i = std::min(first + k, n - 1);
-      packet.valid[k] = first + k < n;
-      packet.ox[k] = origins[i].x();
-      packet.oy[k] = origins[i].y();
-      packet.oz[k] = origins[i].z();
-      packet.near[k] = 0;
-      packet.dx[k] = directions[i].x();
-      packet.dy[k] = directions[i].y();
-      packet.dz[k] = directions[i].z();
-      packet.far[k] = far[i];
-    }
-  }
-  void Trace(const EmbreeScene& scene, RaySet set) {
-    const std::size_t n = origins.size();
-    hits.assign(n, SceneHit{});
-    RayPacket packet;
-    for (std::size_t first = 0; first < n; first += RayPacket::kSize) {
-      Fill(first, packet);
-      scene.Intersect16(set, packet);
-      for (std::size_t k = 0; k < RayPacket::kSize && first + k < n; ++k) {
-        if (packet.object[k] == SceneObject::kNone) continue;
-        hits[first + k] = {packet.object[k], packet.triangle[k], packet.far[k], packet.u[k],
-                           packet.v[k]};
-      }
-    }
-  }
-};
 
 // Whether a straight ray (lens frame) may touch the glass before `far`: it meets the box around it
 // and does not stay beside the contour on its way through.
@@ -133,7 +57,7 @@ enum class BackWay : std::uint8_t {
 };
 
 struct TileRenderer::Batch {
-  Bundle primary;
+  RayBundle primary;
   std::vector<std::uint8_t>
       lens_of;  // one a sample: 0 none, 1 right, 2 left, 3 to be traced exactly
   // Lens kernel, lens frame.
@@ -148,14 +72,14 @@ struct TileRenderer::Batch {
   std::vector<float> back_reflectance;
   std::vector<BackWay> back_way;
   // Head space.
-  Bundle rim, main, front_reflection, back_reflection;
+  RayBundle rim, main, front_reflection, back_reflection;
   std::vector<std::uint32_t> main_of, front_of, back_of;
   std::vector<Eigen::Vector3f> back_weight;
   // Dispersion.
   std::vector<std::uint32_t> parted;  // indices into main
   RayColumns colour_in, colour_exit;
   std::vector<std::uint8_t> colour_status;
-  Bundle colour;
+  RayBundle colour;
 };
 
 TileRenderer::TileRenderer(const HeadScene& head, const RayFollower& follower, const Camera& camera,
@@ -199,7 +123,7 @@ void TileRenderer::Direct(std::size_t i, const Batch& batch, std::vector<CameraS
       sample.inserted = follower_.Frame(hit, point, direction, gloss);
     }
     if (passed.maxCoeff() > 0) {
-      hit = head_.scene.Intersect(RaySet::kHead, origin, direction, 0, kInfinity);
+      hit = head_.scene.Intersect(RaySet::kHead, origin, direction, 0, kEndless);
       point = origin + hit.distance * direction;
     }
   }
@@ -270,11 +194,11 @@ float TileRenderer::Parting(std::size_t lens, const Batch& batch, std::size_t ma
   const float slope = picture.Depth(origin + direction) - from;
   float way = batch.main.hits[main].distance;
   if (!batch.main.hits[main].hit()) {
-    if (slope <= 1e-6f) return kInfinity;
+    if (slope <= 1e-6f) return kEndless;
     way = (picture.background_depth() - from) / slope;
   }
   const float depth = from + way * slope;
-  if (depth <= 1) return kInfinity;
+  if (depth <= 1) return kEndless;
   return kMargin * float(spread) * bend * (way + (r.second_point - r.first_point).norm()) *
          float(camera_.fx) / depth;
 }
@@ -370,7 +294,7 @@ void TileRenderer::TraceLens(std::size_t lens, Batch& batch, std::vector<CameraS
   for (std::size_t i = 0; i < samples.size(); ++i) {
     const Eigen::Vector3f d = lens_from_head * batch.primary.directions[i];
     const SceneHit& hit = batch.primary.hits[i];
-    if (MayTouch(solid, origin_in_lens, d, hit.hit() ? hit.distance : kInfinity)) {
+    if (MayTouch(solid, origin_in_lens, d, hit.hit() ? hit.distance : kEndless)) {
       batch.sample_of.push_back(std::uint32_t(i));
     }
   }
@@ -565,7 +489,7 @@ void TileRenderer::TraceLens(std::size_t lens, Batch& batch, std::vector<CameraS
   batch.main.Trace(head_.scene, RaySet::kAll);
   batch.front_reflection.Trace(head_.scene, RaySet::kAll);
   batch.back_reflection.Trace(head_.scene, RaySet::kAll);
-  const auto add = [&](std::uint32_t k, const Bundle& bundle, std::size_t j,
+  const auto add = [&](std::uint32_t k, const RayBundle& bundle, std::size_t j,
                        const Eigen::Vector3f& weight, bool transmitted) {
     CameraSample& sample = samples[batch.regular[k].sample];
     sample.inserted +=

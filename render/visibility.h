@@ -10,6 +10,11 @@
 
 namespace lorgnette {
 
+// How far off the skin rays against the frame start, mm.
+inline constexpr float kFrameLift_mm = 0.02f;
+// The same against the face: smooth normals rise above the flat triangles.
+inline constexpr float kFaceLift_mm = 0.3f;
+
 // Calls visit(first, packet, cosine) for every group of 16 neighbours in `directions` (count a
 // multiple of 16) of which any lies above the surface; packet.valid marks those that do, cosine
 // holds their dot product with `normal`. Packets come ready to trace from `origin`.

@@ -99,7 +99,7 @@ std::vector<std::size_t> Anchorer::NearestViews(std::size_t f) const {
   };
   std::stable_sort(order.begin(), order.end(),
                    [&](std::size_t a, std::size_t b) { return angle(a) < angle(b); });
-  order.resize(std::min(order.size(), kViewsPerFrame));
+  if (order.size() > kViewsPerFrame) order.erase(order.begin() + kViewsPerFrame, order.end());
   return order;
 }
 

@@ -15,28 +15,28 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-constexpr const char* kFormat = "lorgnette-camera";
-constexpr int kVersion = 1;
-constexpr double kHuge = 1e6, kMostDistortion = 100;
+constexpr const char* kCameraFormat = "lorgnette-camera";
+constexpr int kCameraVersion = 1;
+constexpr double kFarthest_px = 1e6, kMostDistortion = 100;
 constexpr double kSameShape = 0.005;
 
 }  // namespace
 
 Result<CalibratedCamera> ParseCameraFile(const std::string& text, const std::string& name) {
   LG_ASSIGN(JsonReader json, JsonReader::Parse(text, name));
-  if (const std::string format = json.String("format"); format != kFormat) {
-    json.Fail("format", fmt::format("got '{}', want '{}'", format, kFormat));
+  if (const std::string format = json.String("format"); format != kCameraFormat) {
+    json.Fail("format", fmt::format("got '{}', want '{}'", format, kCameraFormat));
   }
-  json.IntegerOr("version", kVersion, kVersion, kVersion);
+  json.IntegerOr("version", kCameraVersion, kCameraVersion, kCameraVersion);
   CalibratedCamera out;
   out.camera.width = int(std::lround(json.Number("width", 1, 32768)));
   out.camera.height = int(std::lround(json.Number("height", 1, 32768)));
   const std::vector<double> k = json.Numbers("K");
   if (k.size() != 9) {
     json.Fail("K", fmt::format("got {} numbers, want 9", k.size()));
-  } else if (!(k[0] >= 1 && k[0] <= kHuge && k[4] >= 1 && k[4] <= kHuge) ||
-             !(std::abs(k[2]) <= kHuge && std::abs(k[5]) <= kHuge) || k[1] != 0 || k[3] != 0 ||
-             k[6] != 0 || k[7] != 0 || k[8] != 1) {
+  } else if (!(k[0] >= 1 && k[0] <= kFarthest_px && k[4] >= 1 && k[4] <= kFarthest_px) ||
+             !(std::abs(k[2]) <= kFarthest_px && std::abs(k[5]) <= kFarthest_px) || k[1] != 0 ||
+             k[3] != 0 || k[6] != 0 || k[7] != 0 || k[8] != 1) {
     json.Fail("K", "got another matrix, want fx 0 cx, 0 fy cy, 0 0 1 in pixels, fx and fy from 1");
   } else {
     out.camera.fx = k[0];
@@ -56,8 +56,8 @@ Result<CalibratedCamera> ParseCameraFile(const std::string& text, const std::str
                                           d.size()));
     }
   }
-  out.rms_px = json.NumberOr("rms_px", 0, 0, kHuge);
-  out.focal_sigma_px = json.NumberOr("focal_sigma_px", 0, 0, kHuge);
+  out.rms_px = json.NumberOr("rms_px", 0, 0, kFarthest_px);
+  out.focal_sigma_px = json.NumberOr("focal_sigma_px", 0, 0, kFarthest_px);
   out.views = json.IntegerOr("views", 0, 0, 1000000);
   LG_RETURN_IF_ERROR(json.Finish());
   return out;
@@ -72,8 +72,8 @@ Status WriteCameraFile(const CalibratedCamera& camera, const std::string& path) 
   const Camera& c = camera.camera;
   const LensDistortion& d = camera.distortion;
   Json json;
-  json["format"] = kFormat;
-  json["version"] = kVersion;
+  json["format"] = kCameraFormat;
+  json["version"] = kCameraVersion;
   json["width"] = c.width;
   json["height"] = c.height;
   json["K"] = {{c.fx, 0, c.cx}, {0, c.fy, c.cy}, {0, 0, 1}};

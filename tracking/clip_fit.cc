@@ -19,7 +19,7 @@ namespace {
 constexpr std::size_t kFramesForFocal = 48;
 constexpr double kFocalLogSigma = 0.25;  // about the typical focal length
 // How far the shape may leave its prior once the anchors have told the depth (mm).
-const Eigen::Vector3d kShapeSigmaMm(20, 20, 1);
+const Eigen::Vector3d kClipSigma_mm(20, 20, 1);
 constexpr double kFieldSigmaMm = 15;  // over which the anchors' depths are spread on the face
 constexpr double kMinFrontal = 0.4;   // z of an anchor's normal
 constexpr double kMostDepthMm = 12;
@@ -201,7 +201,7 @@ ClipFit FitClip(const std::vector<FollowedFrame>& frames, const CanonicalMesh& c
   std::vector<Eigen::Isometry3d> poses = Completed(landmarks, landmark_poses, anchored.poses);
 
   ApplyAnchorDepths(anchored.views, points);
-  points = ShapeFromLandmarks(track.camera, points, kShapeSigmaMm, landmarks, poses);
+  points = ShapeFromLandmarks(track.camera, points, kClipSigma_mm, landmarks, poses);
   const Similarity head = HeadFromPoints(points, canonical, pd_mm);
   for (Eigen::Vector3d& p : points) p = head(p);
   for (Eigen::Isometry3d& pose : poses) pose = head.Rebased(pose);

@@ -20,10 +20,10 @@ constexpr double kApexBeforeLids = 0.031;
 // Landmarks scatter and slide by this share of the pupil distance (docs/tracking.md).
 constexpr double kLandmarkSigma = 0.03;
 // How far a personal face may leave the canonical one: across and up, and in depth (mm).
-const Eigen::Vector3d kShapeSigmaMm(20, 20, 2);
+const Eigen::Vector3d kPriorSigma_mm(20, 20, 2);
 constexpr double kFrontalWithinDeg =
     10;                     // weight of a frame falls with the angle to its most frontal
-constexpr int kRounds = 3;  // of poses and points in turn
+constexpr int kFitRounds = 3;  // of poses and points in turn
 constexpr std::size_t kMostFrames = 60;  // frames that shape the face
 
 Eigen::Vector3d MeanOf(const std::vector<Eigen::Vector3d>& points, const std::array<int, 4>& ids) {
@@ -166,7 +166,7 @@ std::vector<Eigen::Vector3d> ShapeFromLandmarks(const Camera& camera,
   const Eigen::Vector3d stiffness = prior_sigma_mm.cwiseAbs2().cwiseInverse();
   const double sigma_mm = kLandmarkSigma * PupilsOf(prior).distance();
   std::vector<Eigen::Vector3d> head = prior;
-  for (int round = 0; round < kRounds; ++round) {
+  for (int round = 0; round < kFitRounds; ++round) {
     for (std::size_t i = 0; i < head.size(); ++i) {
       Eigen::Matrix3d normal = stiffness.asDiagonal();
       Eigen::Vector3d right = stiffness.cwiseProduct(prior[i] - head[i]);
@@ -198,13 +198,13 @@ std::vector<Eigen::Vector3d> FitFace(const Camera& camera, const CanonicalMesh& 
   const std::vector<Eigen::Vector3d> prior = CanonicalHead(canonical, pd_mm);
   std::vector<Eigen::Vector3d> head = prior;
   poses.assign(frames.size(), Eigen::Isometry3d::Identity());
-  for (int round = 0; round <= kRounds; ++round) {
+  for (int round = 0; round <= kFitRounds; ++round) {
     for (std::size_t f = 0; f < frames.size(); ++f) {
       if (frames[f] == nullptr) continue;
       poses[f] = FitLandmarkPose(camera, head, canonical.rigid_weight, *frames[f]).camera_from_head;
     }
-    if (round == kRounds) break;
-    head = ShapeFromLandmarks(camera, prior, kShapeSigmaMm, frames, poses);
+    if (round == kFitRounds) break;
+    head = ShapeFromLandmarks(camera, prior, kPriorSigma_mm, frames, poses);
     const Similarity aligned = HeadFromPoints(head, canonical, pd_mm);
     for (Eigen::Vector3d& p : head) p = aligned(p);
   }

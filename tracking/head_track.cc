@@ -15,8 +15,8 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-constexpr const char* kFormat = "lorgnette-head-track";
-constexpr int kVersion = 1;
+constexpr const char* kTrackFormat = "lorgnette-head-track";
+constexpr int kTrackVersion = 1;
 constexpr double kHuge = 1e6;                // mm or px; nothing sensible is larger
 constexpr double kVertexDigits = 1e3;        // vertices are written to 0.001 mm
 constexpr double kRotationTolerance = 1e-4;  // of R^T R - 1: files of others carry four digits
@@ -185,10 +185,10 @@ Result<HeadTrack> ReadHeadTrack(const std::string& path) {
 Result<HeadTrack> ParseHeadTrack(const std::string& text, const std::string& name) {
   LG_ASSIGN(JsonReader json, JsonReader::Parse(text, name));
   const std::string format = json.String("format");
-  if (format != kFormat) {
-    json.Fail("format", fmt::format("got '{}', want '{}'", format, kFormat));
+  if (format != kTrackFormat) {
+    json.Fail("format", fmt::format("got '{}', want '{}'", format, kTrackFormat));
   }
-  json.IntegerOr("version", kVersion, kVersion, kVersion);
+  json.IntegerOr("version", kTrackVersion, kTrackVersion, kTrackVersion);
   HeadTrack track;
   track.camera = ReadCamera(json.Object("camera"), track.distortion);
   track.pd_mm = json.Number("pd_mm", 40, 90);
@@ -215,8 +215,8 @@ Result<HeadTrack> ParseHeadTrack(const std::string& text, const std::string& nam
 
 Status WriteHeadTrack(const HeadTrack& track, const std::string& path) {
   Json json;
-  json["format"] = kFormat;
-  json["version"] = kVersion;
+  json["format"] = kTrackFormat;
+  json["version"] = kTrackVersion;
   const Camera& c = track.camera;
   json["camera"] = {{"width", c.width}, {"height", c.height}, {"fx", c.fx},
                     {"fy", c.fy},       {"cx", c.cx},         {"cy", c.cy}};

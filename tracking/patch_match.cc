@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "tracking/patch_match.h"
 
-#include <Eigen/Eigenvalues>
 #include <Eigen/LU>
 #include <cmath>
 #include <opencv2/imgproc.hpp>
 
+#include "base/linear_algebra.h"
 #include "tracking/opencv_view.h"
 
 namespace lorgnette {
@@ -14,9 +14,9 @@ namespace {
 constexpr double kSurroundingsSigma = 6;  // px of each level
 constexpr double kNoiseLevels = 3;        // grey levels of deviation that count as nothing
 constexpr double kSoften = 0.8;           // px, against the samples' own noise
-constexpr int kMaxSteps = 12;
-constexpr double kSettled = 0.02;       // px
-constexpr double kMinStrength = 0.004;  // per px^2, of values of about unit deviation
+constexpr int kMaxMatchSteps = 12;
+constexpr double kMatchSettled_px = 0.02;  // px
+constexpr double kMinStrength = 0.004;     // per px^2, of values of about unit deviation
 
 Image<float, 1> Normalised(const cv::Mat& grey) {
   cv::Mat image, mean, deviation;
@@ -80,9 +80,7 @@ std::optional<PatchTemplate> PatchTemplate::Cut(const Image<float, 1>& level,
       patch.structure_ += gradient * gradient.transpose();
     }
   }
-  const Eigen::SelfAdjointEigenSolver<Eigen::Matrix2d> eigen(patch.structure_,
-                                                             Eigen::EigenvaluesOnly);
-  patch.strength_ = eigen.eigenvalues()[0] / kSamples;
+  patch.strength_ = SymmetricEigenvalues(patch.structure_)[0] / kSamples;
   if (patch.strength_ < kMinStrength) return std::nullopt;
   return patch;
 }
@@ -97,7 +95,7 @@ std::optional<PatchTemplate::Match> PatchTemplate::Find(const Image<float, 1>& l
   Eigen::Vector2d position = guess;
   std::array<float, kSamples> seen;
   bool settled = false;
-  for (int step = 0; step < kMaxSteps && !settled; ++step) {
+  for (int step = 0; step < kMaxMatchSteps && !settled; ++step) {
     const Eigen::Matrix2d& m = other_from_patch;
     const double extent = kRadius * (m.cwiseAbs() * Eigen::Vector2d::Ones()).maxCoeff() + 1;
     const double cx = position.x() - 0.5, cy = position.y() - 0.5;
@@ -120,7 +118,7 @@ std::optional<PatchTemplate::Match> PatchTemplate::Find(const Image<float, 1>& l
     }
     const Eigen::Vector2d move = m * (inverse * Eigen::Vector2d(double(sum_x), double(sum_y)));
     position += move;
-    settled = move.norm() < kSettled;
+    settled = move.norm() < kMatchSettled_px;
     if ((position - guess).norm() > reach_px) return std::nullopt;
   }
   if (!settled) return std::nullopt;

@@ -7,7 +7,7 @@
 namespace lorgnette {
 namespace {
 
-constexpr int kMaxSteps = 30;
+constexpr int kMaxPoseSteps = 30;
 constexpr double kConverged = 1e-7;  // radians and mm
 constexpr double kNearestMm = 1;     // points nearer to the camera than this do not count
 
@@ -74,7 +74,7 @@ PoseFit FitPose(const Camera& camera, const std::vector<PointSighting>& sighting
   fit.camera_from_head = guess;
   Equations eq = Linearise(camera, sightings, guess, scale_px);
   double damping = 1e-6;
-  for (int step = 0; step < kMaxSteps; ++step) {
+  for (int step = 0; step < kMaxPoseSteps; ++step) {
     Matrix6d damped = eq.normal;
     damped.diagonal() *= 1 + damping;
     damped.diagonal().array() += 1e-12;

@@ -16,8 +16,8 @@ class CalibrateTest : public ProgramTest {
   // Pictures of a board that the wide camera took, `count` of them.
   std::vector<std::string> BoardPictures(std::size_t count) const {
     const Chessboard board{7, 5, 30};
-    const lorgnette::testing::BoardPainter painter(lorgnette::testing::WideCamera(), board);
-    const auto poses = lorgnette::testing::BoardPoses(board);
+    const test::BoardPainter painter(test::WideCamera(), board);
+    const auto poses = test::BoardPoses(board);
     std::vector<std::string> names;
     for (std::size_t i = 0; i < count; ++i) {
       names.push_back(Path("view" + std::to_string(i) + ".png"));
@@ -36,8 +36,7 @@ TEST_F(CalibrateTest, WritesACameraFromPictures) {
   EXPECT_THAT(ran.out, HasSubstr("640x480 pixels, focal length 5"));
   const auto camera = ReadCameraFile(Path("cam.json"));
   ASSERT_TRUE(camera) << camera.error().message;
-  EXPECT_NEAR(camera->camera.fx, lorgnette::testing::WideCamera().camera.fx,
-              4 * camera->focal_sigma_px);
+  EXPECT_NEAR(camera->camera.fx, test::WideCamera().camera.fx, 4 * camera->focal_sigma_px);
   EXPECT_GT(camera->focal_sigma_px, 0);
   EXPECT_LT(camera->rms_px, 0.15);
   // The file fits no other picture.

@@ -13,8 +13,6 @@ namespace {
 
 using testing::HasSubstr;
 
-constexpr char kTable1[] = LORGNETTE_SOURCE_DIR "/data/prescriptions/table1.json";
-
 TEST_F(ProgramTest, VersionAndHelpSucceed) {
   EXPECT_EQ(Run({"--version"}).out, std::string("lorgnette ") + ProgramVersion() + "\n");
   EXPECT_EQ(Run({"--help"}).code, kExitOk);

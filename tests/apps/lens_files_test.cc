@@ -21,8 +21,6 @@ namespace {
 
 using testing::HasSubstr;
 
-constexpr char kTable1[] = LORGNETTE_SOURCE_DIR "/data/prescriptions/table1.json";
-
 // Volume of a mesh by the divergence theorem, and how many of its edges lack their opposite.
 struct Solid {
   double volume_mm3 = 0;

@@ -18,6 +18,8 @@
 
 namespace lorgnette {
 
+inline constexpr char kTable1[] = LORGNETTE_SOURCE_DIR "/data/prescriptions/table1.json";
+
 struct Ran {
   int code = 0;
   std::string out, err;

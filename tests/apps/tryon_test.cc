@@ -16,8 +16,6 @@ namespace {
 
 using testing::HasSubstr;
 
-constexpr char kTable1[] = LORGNETTE_SOURCE_DIR "/data/prescriptions/table1.json";
-
 class TryonTest : public ProgramTest {
  protected:
   // A picture without a face.

@@ -11,6 +11,7 @@
 #include "optics/pencil.h"
 #include "optics/power_vector.h"
 #include "optics/tolerances.h"
+#include "tests/optics/orders.h"
 
 namespace lorgnette {
 namespace {
@@ -23,16 +24,6 @@ static_assert(!std::is_constructible_v<CertifiedLens, LensDesign, Certificate>);
 // What the extrapolated pencils leave: truncation of sixth order and rounding, see pencil.h.
 constexpr double kPencilPower_D = 2e-9;
 constexpr double kStatedError_D = 3e-8;  // what the certificate may claim to know it by
-
-LensOrder Order(double sphere, double cylinder = 0, double axis = 180) {
-  LensOrder order;
-  order.rx.sphere = Diopters(sphere);
-  order.rx.cylinder = Diopters(cylinder);
-  order.rx.axis = AxisDegrees(axis);
-  order.medium = {"1.60", 1.6, 42, 1.30};
-  order.diameter_mm = 50;
-  return order;
-}
 
 const Measurement& Find(const Certificate& certificate, const std::string& start) {
   for (const Measurement& m : certificate.measurements) {
@@ -50,7 +41,7 @@ TEST(Certify, MeasuresThePowerThatWasOrdered) {
                                 {-14.0, -4.0, 10.0},
                                 {0.0, 0.0, 180.0},
                                 {12.0, 0.0, 180.0}}) {
-    const auto design = DesignLens(Order(s, c, a));
+    const auto design = DesignLens(test::Order160(s, c, a));
     ASSERT_TRUE(design) << design.error().message;
     const auto lens = Certify(*design);
     ASSERT_TRUE(lens) << lens.error().message;
@@ -71,11 +62,11 @@ TEST(Certify, MeasuresThePowerThatWasOrdered) {
 // C3: the observer's magnification of three lenses (the golden depth 15.05 is a vertex distance of
 // 12 and a pupil at 3.05 mm).
 TEST(Certify, MeasuresTheGoldenMagnification) {
-  LensOrder minus = Order(-6);
+  LensOrder minus = test::Order160(-6);
   minus.base_curve = Diopters(2);
   minus.center_thickness_mm = 1.5;
   minus.vertex_distance_mm = 12;
-  LensOrder plus = Order(6);
+  LensOrder plus = test::Order160(6);
   plus.base_curve = Diopters(9);
   plus.center_thickness_mm = 5;
   plus.vertex_distance_mm = 12;
@@ -93,7 +84,7 @@ TEST(Certify, MeasuresTheGoldenMagnification) {
 
 TEST(Certify, MeasuresGroundPrismWithTheBaseWhereOrdered) {
   for (const Eye eye : {Eye::kRight, Eye::kLeft}) {
-    LensOrder order = Order(-3, -1.5, 40);
+    LensOrder order = test::Order160(-3, -1.5, 40);
     order.eye = eye;
     order.rx.prism_in = PrismDiopters(2.5);
     order.rx.prism_up = PrismDiopters(-1);
@@ -116,7 +107,7 @@ TEST(Certify, MeasuresGroundPrismWithTheBaseWhereOrdered) {
 // The pencil meets a ground back obliquely; its curvatures make up for that, to the last digit.
 TEST(Certify, PrismDoesNotDisturbThePower) {
   for (const double prism : {0.5, 3.0, 10.0}) {
-    LensOrder order = Order(-8, -2, 65);
+    LensOrder order = test::Order160(-8, -2, 65);
     order.diameter_mm = 40;
     order.rx.prism_in = PrismDiopters(prism);
     order.rx.prism_up = PrismDiopters(prism / 2);
@@ -136,7 +127,7 @@ TEST(Certify, PrismDoesNotDisturbThePower) {
 // The closed form of a lens with prism agrees with rays as closely as that of a lens without.
 TEST(Certify, MagnificationIsPredictedThroughPrismToo) {
   for (const double prism : {0.0, 1e-7, 1.0, 6.0, 15.0}) {
-    LensOrder order = Order(5, -2, 35);
+    LensOrder order = test::Order160(5, -2, 35);
     order.diameter_mm = 40;
     order.rx.prism_in = PrismDiopters(-prism);
     order.rx.prism_up = PrismDiopters(0.4 * prism);
@@ -150,25 +141,25 @@ TEST(Certify, MagnificationIsPredictedThroughPrismToo) {
 }
 
 TEST(Certify, RefusesALensThatDoesNotMatchItsOrder) {
-  LensDesign design = *DesignLens(Order(-6));
+  LensDesign design = *DesignLens(test::Order160(-6));
   design.order.rx.sphere = Diopters(-5.85);
   auto lens = Certify(design);
   ASSERT_FALSE(lens);
   EXPECT_THAT(lens.error().message, HasSubstr("back vertex power, axis meridian"));
   EXPECT_THAT(lens.error().message, HasSubstr("measured -6.0000 D, want -5.8500 +- 0.1300"));
 
-  design = *DesignLens(Order(-6));
+  design = *DesignLens(test::Order160(-6));
   design.lens.back_tilt_y = 0.02;
   lens = Certify(design);
   ASSERT_FALSE(lens);
   EXPECT_THAT(lens.error().message, HasSubstr("prism"));
 
-  design = *DesignLens(Order(-6, -2, 30));
+  design = *DesignLens(test::Order160(-6, -2, 30));
   design.order.rx.axis = AxisDegrees(32.5);
   lens = Certify(design);
   ASSERT_FALSE(lens);
 
-  design = *DesignLens(Order(6));
+  design = *DesignLens(test::Order160(6));
   design.lens.center_thickness_mm -= 4;
   EXPECT_FALSE(Certify(design));
 }

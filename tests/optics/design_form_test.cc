@@ -12,23 +12,14 @@
 #include "optics/outline.h"
 #include "optics/pencil.h"
 #include "optics/soft_progressive.h"
+#include "tests/optics/orders.h"
 
 namespace lorgnette {
 namespace {
 
 using testing::HasSubstr;
 
-constexpr double kPencilPower_D = 2e-9;  // tests/optics/certify_test.cc
-
-LensOrder Order(double s, double c = 0, double a = 180) {
-  LensOrder order;
-  order.rx.sphere = Diopters(s);
-  order.rx.cylinder = Diopters(c);
-  order.rx.axis = AxisDegrees(a);
-  order.medium.index_d = 1.6;
-  order.diameter_mm = 50;
-  return order;
-}
+constexpr double kFormPower_D = 2e-9;  // tests/optics/certify_test.cc
 
 void ExpectPower(const LensDesign& design, double bound) {
   const auto pencil = MeasurePower(design.lens, design.lens.medium.index_d);
@@ -44,20 +35,20 @@ void ExpectPower(const LensDesign& design, double bound) {
 TEST(ToricFront, GivesTheExactPowerWithASphericalBack) {
   for (const auto& [s, c, a] :
        {std::tuple{-4.0, -3.0, 30.0}, {3.0, 2.5, 100.0}, {6.0, -4.0, 75.0}}) {
-    LensOrder order = Order(s, c, a);
+    LensOrder order = test::Order160(s, c, a);
     order.toric_side = ToricSide::kFront;
     const auto design = DesignLens(order);
     ASSERT_TRUE(design) << design.error().message;
     EXPECT_TRUE(std::holds_alternative<SphereSurface>(design->lens.back.shape()));
     EXPECT_TRUE(std::holds_alternative<TorusSurface>(design->lens.front.shape()));
-    ExpectPower(*design, kPencilPower_D);
+    ExpectPower(*design, kFormPower_D);
     EXPECT_TRUE(Certify(*design)) << Certify(*design).error().message;
   }
 }
 
 // Published case 20, thin: +3 -1 x 180 on a +6 back... as front: base +6 is the flatter meridian.
 TEST(ToricFront, BaseCurveIsTheFlatterMeridian) {
-  LensOrder order = Order(3, -1, 180);
+  LensOrder order = test::Order160(3, -1, 180);
   order.toric_side = ToricSide::kFront;
   order.base_curve = Diopters(6);
   const LensDesign design = *DesignLens(order);
@@ -69,7 +60,7 @@ TEST(ToricFront, BaseCurveIsTheFlatterMeridian) {
 // The aspheric front has no oblique astigmatism at its gaze, where the spherical one has some.
 TEST(AsphericFront, CancelsObliqueAstigmatismAtTheChosenGaze) {
   for (const auto& [power, base] : {std::pair{4.0, 5.0}, {6.0, 7.0}, {-6.0, 1.0}}) {
-    LensOrder order = Order(power);
+    LensOrder order = test::Order160(power);
     order.base_curve = Diopters(base);
     const auto oblique = [&](const Lens& lens) {
       const GazeVergence g = EvaluateGaze(lens, 1.6, EyePose::OnAxis(lens),
@@ -82,7 +73,7 @@ TEST(AsphericFront, CancelsObliqueAstigmatismAtTheChosenGaze) {
     ASSERT_TRUE(aspheric) << aspheric.error().message;
     EXPECT_GT(std::abs(oblique(plain.lens)), 0.1);
     EXPECT_NEAR(oblique(aspheric->lens), 0, 1e-8);
-    ExpectPower(*aspheric, kPencilPower_D);
+    ExpectPower(*aspheric, kFormPower_D);
     std::cout << power << " D on base " << base << ": oblique astigmatism " << oblique(plain.lens)
               << " D, thickness " << plain.lens.center_thickness_mm << " -> "
               << aspheric->lens.center_thickness_mm << " mm\n";
@@ -90,14 +81,14 @@ TEST(AsphericFront, CancelsObliqueAstigmatismAtTheChosenGaze) {
 }
 
 TEST(BifocalLens, KeepsTheDistancePowerAndCertifies) {
-  LensOrder order = Order(2, -1, 60);
+  LensOrder order = test::Order160(2, -1, 60);
   order.rx.add = Diopters(2.25);
   for (const SegmentShape shape :
        {SegmentShape::kRound, SegmentShape::kFlatTop, SegmentShape::kExecutive}) {
     order.segment = SegmentOrder{shape, 28, -4, 2};
     const auto design = DesignLens(order);
     ASSERT_TRUE(design) << design.error().message;
-    ExpectPower(*design, kPencilPower_D);
+    ExpectPower(*design, kFormPower_D);
     const auto lens = Certify(*design);
     ASSERT_TRUE(lens) << lens.error().message;
     const auto& m = lens->certificate().measurements;
@@ -110,7 +101,7 @@ TEST(BifocalLens, KeepsTheDistancePowerAndCertifies) {
 }
 
 TEST(ProgressiveLens, KeepsTheDistancePowerAndCertifies) {
-  LensOrder order = Order(-2, -1, 60);
+  LensOrder order = test::Order160(-2, -1, 60);
   order.rx.add = Diopters(2);
   for (const ProgressiveDesign kind : {ProgressiveDesign::kHard, ProgressiveDesign::kSoft}) {
     order.progressive = ProgressiveOrder{kind, -2, 14, 2.5};
@@ -133,7 +124,7 @@ TEST(ThinningPrism, IsTwoThirdsOfTheAddition) {
 
 // Prism thinning brings the upper and the lower edge of a progressive nearer each other.
 TEST(ThinningPrism, ThinsAPlusProgressive) {
-  LensOrder order = Order(2);
+  LensOrder order = test::Order160(2);
   order.rx.add = Diopters(2);
   order.progressive = ProgressiveOrder{};
   const LensDesign plain = *DesignLens(order);
@@ -156,7 +147,7 @@ TEST(PaperForm, ErrsByItsKnownRemainder) {
        {Row{1.6, 1.5, 2, 7.0e-6}, Row{1.5, 5, 8, 0.00584}, Row{1.74, 7, 12, 0.0294},
         Row{1.5, 8, 14, 0.0843}, Row{1.5, 9, 16, 0.163}}) {
     const double ordered = std::min(row.front - 4, 6.0);
-    LensOrder order = Order(ordered);
+    LensOrder order = test::Order160(ordered);
     order.medium.index_d = row.index;
     order.base_curve = Diopters(row.front);
     order.center_thickness_mm = row.thickness;
@@ -172,7 +163,7 @@ TEST(PaperForm, ErrsByItsKnownRemainder) {
 }
 
 TEST(DesignLens, RefusesFormsThatExcludeEachOther) {
-  LensOrder order = Order(2, -1, 60);
+  LensOrder order = test::Order160(2, -1, 60);
   order.rx.add = Diopters(2);
   order.segment = SegmentOrder{};
   order.progressive = ProgressiveOrder{};
@@ -186,7 +177,7 @@ TEST(DesignLens, RefusesFormsThatExcludeEachOther) {
 }
 
 TEST(DesignLens, BlankCoversTheOutlineAboutTheOpticalCentre) {
-  LensOrder order = Order(-2);
+  LensOrder order = test::Order160(-2);
   order.contour_mm = {{-20, -12}, {28, -12}, {28, 12}, {-20, 12}};
   EXPECT_NEAR(DesignLens(order)->min_blank_mm, 2 * std::hypot(28, 12) + kBlankAllowance_mm, 1e-12);
 }

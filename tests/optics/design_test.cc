@@ -9,22 +9,15 @@
 
 #include "optics/base_curve.h"
 #include "optics/outline.h"
+#include "tests/optics/orders.h"
 
 namespace lorgnette {
 namespace {
 
 using testing::HasSubstr;
 
-LensOrder Order(double sphere, double cylinder = 0, double axis = 180) {
-  LensOrder order;
-  order.rx.sphere = Diopters(sphere);
-  order.rx.cylinder = Diopters(cylinder);
-  order.rx.axis = AxisDegrees(axis);
-  return order;
-}
-
 LensOrder GoldenMinusSix() {
-  LensOrder order = Order(-6);
+  LensOrder order = test::PowerOrder(-6);
   order.medium = {"1.60", 1.6, 42, 1.30};
   order.base_curve = Diopters(2);
   order.center_thickness_mm = 1.5;
@@ -56,7 +49,7 @@ TEST(DesignLens, GivesTheGoldenEdgesAndMass) {
   order.diameter_mm = 60;
   EXPECT_NEAR(DesignLens(order)->mass_g, 14.098, 5e-4);
 
-  LensOrder strong = Order(-10);
+  LensOrder strong = test::PowerOrder(-10);
   strong.medium.index_d = 1.74;
   strong.base_curve = Diopters(1);
   strong.center_thickness_mm = 1.5;
@@ -71,7 +64,7 @@ TEST(DesignLens, SolvesTheThicknessOfPlusLenses) {
   };
   for (const Case& c : {Case{4, 1.498, 8, 65, 5.5657796}, Case{6, 1.6, 9, 65, 6.4930561},
                         Case{8, 1.67, 11, 60, 6.5384538}}) {
-    LensOrder order = Order(c.power);
+    LensOrder order = test::PowerOrder(c.power);
     order.medium.index_d = c.index;
     order.base_curve = Diopters(c.front);
     order.diameter_mm = c.diameter;
@@ -83,15 +76,15 @@ TEST(DesignLens, SolvesTheThicknessOfPlusLenses) {
 }
 
 TEST(DesignLens, KeepsTheLeastCentreOfMinusAndWeakLenses) {
-  EXPECT_EQ(DesignLens(Order(-3))->lens.center_thickness_mm, 1.5);
-  EXPECT_EQ(DesignLens(Order(0))->lens.center_thickness_mm, 1.5);
-  EXPECT_EQ(DesignLens(Order(0.25))->lens.center_thickness_mm, 1.5);
+  EXPECT_EQ(DesignLens(test::PowerOrder(-3))->lens.center_thickness_mm, 1.5);
+  EXPECT_EQ(DesignLens(test::PowerOrder(0))->lens.center_thickness_mm, 1.5);
+  EXPECT_EQ(DesignLens(test::PowerOrder(0.25))->lens.center_thickness_mm, 1.5);
 }
 
 // C4's back: r = 74.85911083 along 30 and 54.47089646 along 120 (mathematical angles in the right-
 // handed frame; as TABO axes 150 and 60).
 TEST(DesignLens, GivesTheGoldenTorusWithEitherGenerator) {
-  LensOrder order = Order(-4, -3, 150);
+  LensOrder order = test::PowerOrder(-4, -3, 150);
   order.medium.index_d = 1.6;
   order.base_curve = Diopters(4);
   order.center_thickness_mm = 1.5;
@@ -112,7 +105,8 @@ TEST(DesignLens, GivesTheGoldenTorusWithEitherGenerator) {
 }
 
 TEST(DesignLens, GivesTheSameSurfaceForTheTransposedPrescription) {
-  const auto minus = DesignLens(Order(1.5, -2.25, 20)), plus = DesignLens(Order(-0.75, 2.25, 110));
+  const auto minus = DesignLens(test::PowerOrder(1.5, -2.25, 20)),
+             plus = DesignLens(test::PowerOrder(-0.75, 2.25, 110));
   ASSERT_TRUE(minus && plus);
   const auto& a = std::get<TorusSurface>(minus->lens.back.shape());
   const auto& b = std::get<TorusSurface>(plus->lens.back.shape());
@@ -124,9 +118,9 @@ TEST(DesignLens, GivesTheSameSurfaceForTheTransposedPrescription) {
 
 TEST(DesignLens, TendsToTheSphereAsTheCylinderVanishes) {
   constexpr double kAtHeight_mm = 20;
-  const auto sphere = DesignLens(Order(-5));
+  const auto sphere = DesignLens(test::PowerOrder(-5));
   for (double c = 1e-2; c > 1e-14; c /= 100) {
-    const auto toric = DesignLens(Order(-5, -c, 37));
+    const auto toric = DesignLens(test::PowerOrder(-5, -c, 37));
     ASSERT_TRUE(toric);
     const double sag = sphere->lens.back.Jet(kAtHeight_mm, 3)->z;
     // dz/dF = h^2 / (2000 (n - 1)) = 0.41 mm/D, and twice that with the sag's steepening.
@@ -135,7 +129,7 @@ TEST(DesignLens, TendsToTheSphereAsTheCylinderVanishes) {
 }
 
 TEST(DesignLens, CutsToTheContour) {
-  LensOrder order = Order(4, -2, 90);
+  LensOrder order = test::PowerOrder(4, -2, 90);
   order.contour_mm = {{-24, -14}, {22, -16}, {25, 15}, {-22, 14}};
   const auto design = DesignLens(order);
   ASSERT_TRUE(design) << design.error().message;
@@ -150,7 +144,7 @@ TEST(DesignLens, CutsToTheContour) {
 }
 
 TEST(EdgeProfile, FollowsTheRim) {
-  const LensDesign design = *DesignLens(Order(-5, -2, 30));
+  const LensDesign design = *DesignLens(test::PowerOrder(-5, -2, 30));
   const Outline outline = Outline::Round(60);
   const std::vector<EdgePoint> profile = EdgeProfile(design.lens, outline);
   ASSERT_EQ(profile.size(), outline.rim().size());
@@ -168,7 +162,7 @@ TEST(EdgeProfile, FollowsTheRim) {
 }
 
 TEST(DesignLens, PlanoIsALensToo) {
-  LensOrder order = Order(0);
+  LensOrder order = test::PowerOrder(0);
   order.base_curve = Diopters(0);
   const auto design = DesignLens(order);
   ASSERT_TRUE(design);
@@ -178,7 +172,7 @@ TEST(DesignLens, PlanoIsALensToo) {
 }
 
 TEST(DesignLens, SaysWhatIsImpossibleAndWhatWouldBePossible) {
-  LensOrder strong = Order(-20);
+  LensOrder strong = test::PowerOrder(-20);
   strong.medium.index_d = 1.5;
   strong.base_curve = Diopters(0.5);
   auto design = DesignLens(strong);
@@ -186,14 +180,14 @@ TEST(DesignLens, SaysWhatIsImpossibleAndWhatWouldBePossible) {
   EXPECT_THAT(design.error().message, HasSubstr("back surface of -20.50 D"));
   EXPECT_THAT(design.error().message, HasSubstr("possible: a lens up to 48 mm across"));
 
-  LensOrder knife = Order(6);
+  LensOrder knife = test::PowerOrder(6);
   knife.center_thickness_mm = 2;
   design = DesignLens(knife);
   ASSERT_FALSE(design);
   EXPECT_THAT(design.error().message, HasSubstr("the surfaces cross"));
   EXPECT_THAT(design.error().message, HasSubstr("mm at the centre for the least edge of 1 mm"));
 
-  LensOrder thick = Order(20);
+  LensOrder thick = test::PowerOrder(20);
   thick.base_curve = Diopters(25);
   thick.center_thickness_mm = 40;
   thick.diameter_mm = 30;
@@ -201,7 +195,7 @@ TEST(DesignLens, SaysWhatIsImpossibleAndWhatWouldBePossible) {
   ASSERT_FALSE(design);
   EXPECT_THAT(design.error().message, HasSubstr("tau F1"));
 
-  LensOrder air = Order(1);
+  LensOrder air = test::PowerOrder(1);
   air.medium.index_d = 1;
   ASSERT_FALSE(DesignLens(air));
   EXPECT_THAT(DesignLens(air).error().message, HasSubstr("index: got 1"));
@@ -209,7 +203,7 @@ TEST(DesignLens, SaysWhatIsImpossibleAndWhatWouldBePossible) {
 
 TEST(DesignLens, ShortRuleKeepsStrongPlusLensesReal) {
   for (double power = 1; power <= 20; power += 1) {
-    LensOrder order = Order(power);
+    LensOrder order = test::PowerOrder(power);
     order.medium.index_d = 1.6;
     order.diameter_mm = 55;
     const auto design = DesignLens(order);

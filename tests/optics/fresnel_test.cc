@@ -10,15 +10,15 @@
 namespace lorgnette {
 namespace {
 
-constexpr double kRounding = 1e-14;
+constexpr double kEnergyRounding = 1e-14;
 
 TEST(Fresnel, ConservesEnergyAtEveryAngleAndPolarization) {
   for (const double n2 : {1.0, 1.33, 1.5, 1.74}) {
     for (int deg = 0; deg < 90; ++deg) {
       const double c = std::cos(RadiansFromDegrees(deg));
       for (const auto& power : {FresnelPower(c, 1, n2), FresnelPower(c, n2, 1)}) {
-        EXPECT_NEAR(power.rs + power.ts, 1, kRounding);
-        EXPECT_NEAR(power.rp + power.tp, 1, kRounding);
+        EXPECT_NEAR(power.rs + power.ts, 1, kEnergyRounding);
+        EXPECT_NEAR(power.rp + power.tp, 1, kEnergyRounding);
       }
     }
   }
@@ -27,7 +27,8 @@ TEST(Fresnel, ConservesEnergyAtEveryAngleAndPolarization) {
 TEST(Fresnel, AveragesToTheUnpolarizedReflectance) {
   for (const double eta : {1 / 1.6, 1.6}) {
     for (const double c : {1.0, 0.9, 0.5, 0.1, 0.01}) {
-      EXPECT_NEAR(FresnelPower(c, eta, 1).reflectance(), FresnelReflectance(c, eta), kRounding);
+      EXPECT_NEAR(FresnelPower(c, eta, 1).reflectance(), FresnelReflectance(c, eta),
+                  kEnergyRounding);
     }
   }
 }
@@ -36,7 +37,7 @@ TEST(Fresnel, ReflectsNoPLightAtBrewstersAngle) {
   const double angle = BrewsterAngle(1, 1.523);
   const PolarizedPower power = FresnelPower(std::cos(angle), 1, 1.523);
   EXPECT_LT(power.rp, 1e-30);
-  EXPECT_NEAR(power.reflected_polarization(), 1, kRounding);
+  EXPECT_NEAR(power.reflected_polarization(), 1, kEnergyRounding);
 }
 
 TEST(Fresnel, ReflectsAllPastTheCriticalAngleWithAPhase) {
@@ -45,8 +46,8 @@ TEST(Fresnel, ReflectsAllPastTheCriticalAngleWithAPhase) {
   EXPECT_NEAR(DegreesFromRadians(*CriticalAngle(1.74, 1)), 35.1, 0.05);
   EXPECT_FALSE(CriticalAngle(1, 1.5));
   const FresnelAmplitudes a = Fresnel(std::cos(angle + 0.2), 1.5, 1);
-  EXPECT_NEAR(std::abs(a.rs), 1, kRounding);
-  EXPECT_NEAR(std::abs(a.rp), 1, kRounding);
+  EXPECT_NEAR(std::abs(a.rs), 1, kEnergyRounding);
+  EXPECT_NEAR(std::abs(a.rp), 1, kEnergyRounding);
   EXPECT_GT(std::abs(a.rs.imag()), 0.1);
   EXPECT_EQ(FresnelPower(std::cos(angle + 0.2), 1.5, 1).ts, 0);
 }
@@ -55,9 +56,9 @@ TEST(Fresnel, IsReciprocalAcrossTheInterface) {
   // Stokes: r' = -r and t t' = 1 - r^2 at conjugate angles.
   const double sin1 = 0.6, n = 1.6, c1 = 0.8, c2 = std::sqrt(1 - sin1 * sin1 / (n * n));
   const FresnelAmplitudes in = Fresnel(c1, 1, n), out = Fresnel(c2, n, 1);
-  EXPECT_NEAR((in.rs + out.rs).real(), 0, kRounding);
-  EXPECT_NEAR((in.rp + out.rp).real(), 0, kRounding);
-  EXPECT_NEAR((in.ts * out.ts + in.rs * in.rs).real(), 1, kRounding);
+  EXPECT_NEAR((in.rs + out.rs).real(), 0, kEnergyRounding);
+  EXPECT_NEAR((in.rp + out.rp).real(), 0, kEnergyRounding);
+  EXPECT_NEAR((in.ts * out.ts + in.rs * in.rs).real(), 1, kEnergyRounding);
 }
 
 TEST(PlateTransmittance, MatchesThePublishedTable) {
@@ -73,8 +74,8 @@ TEST(PlateTransmittance, MatchesThePublishedTable) {
     const PlatePower plate = PlateTransmittance(1, row.n);
     EXPECT_NEAR(100 * plate.single_pass, row.single, kThreeDecimals);
     EXPECT_NEAR(100 * plate.transmitted, row.all, kThreeDecimals);
-    EXPECT_NEAR(plate.transmitted, 2 * row.n / (row.n * row.n + 1), kRounding);
-    EXPECT_NEAR(plate.transmitted + plate.reflected, 1, kRounding);
+    EXPECT_NEAR(plate.transmitted, 2 * row.n / (row.n * row.n + 1), kEnergyRounding);
+    EXPECT_NEAR(plate.transmitted + plate.reflected, 1, kEnergyRounding);
   }
 }
 
@@ -85,7 +86,7 @@ TEST(PlateTransmittance, EqualsTheSumOfItsBouncesOneByOne) {
     sum += inside * (1 - r);
     inside *= r * r * glass * glass;
   }
-  EXPECT_NEAR(PlateTransmittance(1, n, glass).transmitted, sum, kRounding);
+  EXPECT_NEAR(PlateTransmittance(1, n, glass).transmitted, sum, kEnergyRounding);
 }
 
 TEST(Ghost, OfAThinLensHasSevenTimesThePowerAtIndexOneAndAHalf) {
@@ -95,7 +96,7 @@ TEST(Ghost, OfAThinLensHasSevenTimesThePowerAtIndexOneAndAHalf) {
   const Ghost ghost = GhostOf(lens, 1.5);
   const double power = 1000 * 0.5 * 0.008;
   EXPECT_NEAR(ghost.power.value(), 7 * power, 1e-12);
-  EXPECT_NEAR(ghost.relative_intensity, 0.04 * 0.04, kRounding);
+  EXPECT_NEAR(ghost.relative_intensity, 0.04 * 0.04, kEnergyRounding);
   // For other indices F (3 n - 1) / (n - 1).
   EXPECT_NEAR(GhostOf(lens, 1.7).power.value(), 1000 * 0.008 * (3 * 1.7 - 1), 1e-12);
 }

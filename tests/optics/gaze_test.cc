@@ -36,7 +36,7 @@ Lens GoldenC4(double generator_deg) {
   return lens;
 }
 
-constexpr double kNineDecimals = 0.5e-9 + 1e-11;
+constexpr double kGazeDecimals = 0.5e-9 + 1e-11;
 constexpr double kSixDecimals = 0.5e-6 + 1e-11;
 constexpr double kAxisDecimals_deg = 0.5e-5 + 1e-9;  // printed to five decimals
 
@@ -44,8 +44,8 @@ TEST(EvaluateGaze, MatchesGoldenC1AtThirtyDegreesOfEyeRotation) {
   const Lens lens = GoldenC1();
   const auto gaze = EvaluateGaze(lens, 1.6, EyePose::OnAxis(lens, 27), {RadiansFromDegrees(30), 0});
   ASSERT_EQ(gaze.status, RayStatus::kOk);
-  EXPECT_NEAR(gaze.sagittal_D, -5.957632772, kNineDecimals);
-  EXPECT_NEAR(gaze.tangential_D, -6.419885812, kNineDecimals);
+  EXPECT_NEAR(gaze.sagittal_D, -5.957632772, kGazeDecimals);
+  EXPECT_NEAR(gaze.tangential_D, -6.419885812, kGazeDecimals);
   const double object_angle = std::acos(gaze.object_ray.direction.z());
   EXPECT_NEAR(DegreesFromRadians(object_angle), 35.937154, kSixDecimals);
   const GazeErrors errors = ErrorsOf(gaze, SystemOf(lens, 1.6).BackVertexPower());
@@ -68,8 +68,8 @@ TEST(EvaluateGaze, IsTheSameInEveryMeridianOfASphericalLens) {
   for (const double phi : {0.3, 1.9, 4.4}) {
     const auto gaze =
         EvaluateGaze(lens, 1.6, EyePose::OnAxis(lens, 27), {RadiansFromDegrees(30), phi});
-    EXPECT_NEAR(gaze.sagittal_D, -5.957632772, kNineDecimals);
-    EXPECT_NEAR(gaze.tangential_D, -6.419885812, kNineDecimals);
+    EXPECT_NEAR(gaze.sagittal_D, -5.957632772, kGazeDecimals);
+    EXPECT_NEAR(gaze.tangential_D, -6.419885812, kGazeDecimals);
     // No cross term in the plane of gaze: Listing's axes keep the meridian.
     EXPECT_NEAR(gaze.power.cylinder.value(), -0.46225304, 1e-8);
   }

@@ -16,6 +16,7 @@
 #include "optics/power_vector.h"
 #include "optics/prism.h"
 #include "optics/trace.h"
+#include "tests/optics/orders.h"
 #include "tests/optics/random_lens.h"
 
 namespace lorgnette {
@@ -25,14 +26,8 @@ using Eigen::Vector2d;
 using Eigen::Vector3d;
 using testing::HasSubstr;
 
-LensOrder Order(double s, double c = 0, double a = 180) {
-  LensOrder order;
-  order.rx.sphere = Diopters(s);
-  order.rx.cylinder = Diopters(c);
-  order.rx.axis = AxisDegrees(a);
-  order.medium.index_d = 1.6;
-  order.diameter_mm = 40;
-  return order;
+LensOrder SmallOrder(double sphere, double cylinder = 0, double axis = 180) {
+  return test::Order160(sphere, cylinder, axis, 40);
 }
 
 // One ray through the batch kernel.
@@ -59,7 +54,7 @@ KernelRay<T> TraceByKernel(const Lens& lens, const Ray& ray) {
 // still deviates by 1e-12 of its prism, to the last digit of the direction.
 TEST(HardCase, WeakLensesDeviateAsPrenticeSays) {
   for (double power = 1e-12; power < 1; power *= 10) {
-    LensOrder order = Order(power);
+    LensOrder order = SmallOrder(power);
     order.base_curve = Diopters(0);
     order.center_thickness_mm = 2;
     const Lens lens = DesignLens(order)->lens;
@@ -95,7 +90,7 @@ TEST(HardCase, ConicsKeepToTheSheetOfTheVertex) {
 // A back surface of -20 D at n = 1.5 has no sag beyond 24.4 mm: rays there miss, none is NaN, in
 // double and float alike.
 TEST(HardCase, RaysBeyondTheSagMiss) {
-  LensOrder order = Order(-20);
+  LensOrder order = SmallOrder(-20);
   order.medium.index_d = 1.5;
   order.base_curve = Diopters(0.5);
   const Lens lens = DesignLens(order)->lens;
@@ -117,7 +112,7 @@ TEST(HardCase, RaysBeyondTheSagMiss) {
 
 TEST(HardCase, LensesOfThirtyDioptersAreMadeOrRefusedWithReason) {
   for (const double power : {-30.0, -20.0, 20.0, 30.0}) {
-    LensOrder order = Order(power);
+    LensOrder order = SmallOrder(power);
     order.medium.index_d = 1.74;
     order.diameter_mm = 30;
     const auto design = DesignLens(order);
@@ -146,7 +141,7 @@ TEST(HardCase, CancellingCylindersLeaveNoAxis) {
   }
   // Certify does not look at an axis below 0.01 D.
   for (const double c : {0.0, -1e-12, -0.005}) {
-    const auto lens = Certify(*DesignLens(Order(-3, c, 77)));
+    const auto lens = Certify(*DesignLens(SmallOrder(-3, c, 77)));
     ASSERT_TRUE(lens);
     for (const Measurement& m : lens->certificate().measurements) EXPECT_NE(m.quantity, "axis");
   }
@@ -154,7 +149,7 @@ TEST(HardCase, CancellingCylindersLeaveNoAxis) {
 
 // Knife edge: a plus lens too thin at the centre would have crossed surfaces.
 TEST(HardCase, CrossedSurfacesAreNeverMade) {
-  LensOrder order = Order(6);
+  LensOrder order = SmallOrder(6);
   const double least = DesignLens(order)->lens.center_thickness_mm;
   for (double t = 0.2; t < least + 1; t += 0.2) {
     order.center_thickness_mm = t;
@@ -173,7 +168,7 @@ TEST(HardCase, CrossedSurfacesAreNeverMade) {
 // tau F1 = 1 puts the back focus on the back vertex: F'v is infinite, and designs stop at 0.5.
 TEST(HardCase, DesignsKeepAwayFromThePoleOfTheBackVertexPower) {
   for (const double thickness : {10.0, 30.0, 60.0, 100.0, 101.0, 1000.0}) {
-    LensOrder order = Order(5);
+    LensOrder order = SmallOrder(5);
     order.base_curve = Diopters(16);
     order.center_thickness_mm = thickness;
     order.diameter_mm = 20;
@@ -190,11 +185,11 @@ TEST(HardCase, DesignsKeepAwayFromThePoleOfTheBackVertexPower) {
 // Equal indices: a radius from a power is 0/0 in design, and the trace passes straight through.
 TEST(HardCase, EqualIndicesAreRefusedInDesignAndTransparentInTracing) {
   for (const double n : {1.0, 1 + 1e-7, 0.9, std::numeric_limits<double>::quiet_NaN()}) {
-    LensOrder order = Order(-3);
+    LensOrder order = SmallOrder(-3);
     order.medium.index_d = n;
     EXPECT_FALSE(DesignLens(order)) << n;
   }
-  Lens lens = DesignLens(Order(-3))->lens;
+  Lens lens = DesignLens(SmallOrder(-3))->lens;
   lens.medium.index_d = 1;
   const Vector3d d = Vector3d(0.2, 0.1, 1).normalized();
   EXPECT_LT((TraceThrough(lens, {{1, 2, -9}, d}).exit.direction - d).norm(), 4e-16);
@@ -220,7 +215,7 @@ TEST(HardCase, TotalReflectionIsAStatusInDoubleAndFloat) {
 
 // A ray that leaves by the edge: the second surface is met far outside the outline or not at all.
 TEST(HardCase, RaysOutByTheEdgeDoNotLookLikeRaysThroughTheLens) {
-  LensOrder order = Order(-10);
+  LensOrder order = SmallOrder(-10);
   const LensDesign design = *DesignLens(order);
   const Vector3d d = Vector3d(1, 0, 0.12).normalized();
   const LensTrace trace = TraceThrough(design.lens, {Vector3d(18, 0, 0) - 5 * d, d});
@@ -234,7 +229,7 @@ TEST(HardCase, RaysOutByTheEdgeDoNotLookLikeRaysThroughTheLens) {
 // Concentric and afocal lenses have no cardinal points; powers, traces and certificates do not
 // care.
 TEST(HardCase, AfocalLensesAreLensesToo) {
-  LensOrder afocal = Order(0);
+  LensOrder afocal = SmallOrder(0);
   afocal.base_curve = Diopters(8);
   afocal.center_thickness_mm = 4;
   const LensDesign design = *DesignLens(afocal);
@@ -254,7 +249,7 @@ TEST(HardCase, AfocalLensesAreLensesToo) {
 // Prism by 1 - cos loses half the digits near the normal; a wedge of 1e-9 radians keeps them.
 TEST(HardCase, TinyPrismsKeepTheirDigits) {
   for (double prism = 1e-9; prism < 10; prism *= 10) {
-    LensOrder order = Order(0);
+    LensOrder order = SmallOrder(0);
     order.base_curve = Diopters(0);
     order.rx.prism_up = PrismDiopters(prism);
     const LensDesign design = *DesignLens(order);
@@ -267,7 +262,7 @@ TEST(HardCase, TinyPrismsKeepTheirDigits) {
 // Powers by second differences of a float sag are useless; the kernel's float rays are not.
 TEST(HardCase, FloatRaysSeeThePower) {
   for (const double power : {-12.0, -6.0, 4.0}) {
-    const Lens lens = DesignLens(Order(power))->lens;
+    const Lens lens = DesignLens(SmallOrder(power))->lens;
     const double h = 2;
     const auto plus = TraceByKernel<float>(lens, {{0, h, -5}, {0, 0, 1}});
     const auto exact = TraceThrough(lens, {{0, h, -5}, {0, 0, 1}});
@@ -282,15 +277,15 @@ TEST(HardCase, FloatRaysSeeThePower) {
 
 TEST(HardCase, NonFiniteOrdersAreRefused) {
   const double nan = std::numeric_limits<double>::quiet_NaN();
-  LensOrder order = Order(nan);
+  LensOrder order = SmallOrder(nan);
   EXPECT_FALSE(DesignLens(order));
-  order = Order(-3);
+  order = SmallOrder(-3);
   order.base_curve = Diopters(nan);
   EXPECT_FALSE(DesignLens(order));
-  order = Order(-3);
+  order = SmallOrder(-3);
   order.contour_mm = {{0, 0}, {nan, 1}, {1, 1}};
   EXPECT_FALSE(DesignLens(order));
-  order = Order(-3);
+  order = SmallOrder(-3);
   order.contour_mm = {{0, 0}, {1, 1}};
   EXPECT_FALSE(DesignLens(order));
 }
@@ -302,7 +297,7 @@ TEST(HardCase, RandomOrdersCertifyOrSayWhy) {
   constexpr int kOrders = 150;
   for (int i = 0; i < kOrders; ++i) {
     LensOrder order =
-        Order(random.Signed(1e-9, 35), random.Signed(1e-9, 8), random.Uniform(0, 180));
+        SmallOrder(random.Signed(1e-9, 35), random.Signed(1e-9, 8), random.Uniform(0, 180));
     order.medium.index_d = 1 + random.Log(0.3, 0.9);
     order.diameter_mm = random.Uniform(20, 80);
     order.rx.prism_in = PrismDiopters(random.Signed(1e-9, 8));

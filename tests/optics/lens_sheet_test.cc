@@ -11,7 +11,7 @@ namespace lorgnette {
 namespace {
 
 // Closed forms of the sheet against each other: a few ulp of numbers up to 1000.
-constexpr double kRounding = 1e-11;
+constexpr double kSheetRounding = 1e-11;
 
 LensDesign Designed(double sphere, double cylinder, double axis) {
   LensOrder order;
@@ -27,10 +27,10 @@ LensDesign Designed(double sphere, double cylinder, double axis) {
 TEST(MakeLensSheet, StatesTheOrderedPowersInItsPrincipalMeridians) {
   for (const double axis : {1.0, 37.0, 90.0, 135.0, 180.0}) {
     const LensSheet sheet = MakeLensSheet(Designed(-4.25, -0.75, axis), {});
-    EXPECT_NEAR(sheet.back_vertex_power_D.along, -4.25, kRounding) << axis;
-    EXPECT_NEAR(sheet.back_vertex_power_D.across, -5.0, kRounding) << axis;
+    EXPECT_NEAR(sheet.back_vertex_power_D.along, -4.25, kSheetRounding) << axis;
+    EXPECT_NEAR(sheet.back_vertex_power_D.across, -5.0, kSheetRounding) << axis;
     EXPECT_NEAR(sheet.radii_back_mm.along * sheet.back_power_D.along, 1000 * (1 - 1.498),
-                1000 * kRounding)
+                1000 * kSheetRounding)
         << axis;
   }
 }
@@ -38,18 +38,18 @@ TEST(MakeLensSheet, StatesTheOrderedPowersInItsPrincipalMeridians) {
 TEST(MakeLensSheet, AddsThePapersErrorToThePapersPower) {
   const LensSheet sheet = MakeLensSheet(Designed(8, -2, 30), {});
   EXPECT_NEAR(sheet.paper_power_D.along + sheet.paper_power_error_D.along,
-              sheet.back_vertex_power_D.along, kRounding);
+              sheet.back_vertex_power_D.along, kSheetRounding);
   EXPECT_NEAR(sheet.paper_power_D.across + sheet.paper_power_error_D.across,
-              sheet.back_vertex_power_D.across, kRounding);
+              sheet.back_vertex_power_D.across, kSheetRounding);
   EXPECT_GT(sheet.paper_power_error_D.along, 1e-3);  // a steep thick lens: the terms are there
 }
 
 TEST(MakeLensSheet, SplitsSpectacleMagnificationIntoShapeAndPower) {
   const LensSheet sheet = MakeLensSheet(Designed(5, -1.5, 70), {});
   EXPECT_NEAR(sheet.shape_factor.along * sheet.power_factor.along,
-              sheet.spectacle_magnification.along, kRounding);
+              sheet.spectacle_magnification.along, kSheetRounding);
   EXPECT_NEAR(sheet.shape_factor.across * sheet.power_factor.across,
-              sheet.spectacle_magnification.across, kRounding);
+              sheet.spectacle_magnification.across, kSheetRounding);
   EXPECT_DOUBLE_EQ(sheet.pupil_mm, 13 + kEntrancePupilDepth_mm);
 }
 

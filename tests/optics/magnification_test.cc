@@ -7,26 +7,20 @@
 #include <cmath>
 #include <random>
 
+#include "tests/optics/power_matrix.h"
+
 namespace lorgnette {
 namespace {
 
 using Eigen::Matrix2d;
 using Eigen::Vector2d;
 
-Matrix2d PowerMatrix(double sphere, double cylinder, double angle_deg) {
-  const double a = RadiansFromDegrees(angle_deg);
-  const double s = std::sin(a), c = std::cos(a);
-  Matrix2d m;
-  m << sphere + cylinder * s * s, -cylinder * s * c, -cylinder * s * c, sphere + cylinder * c * c;
-  return m;
-}
-
 // A lens of two spheres whose exact back vertex power is `power`.
 struct SphericalLens {
   Lens lens;
   ParaxialSystem system;
 };
-SphericalLens MakeLens(double power, double front, double thickness, double index) {
+SphericalLens MakeSphericalLens(double power, double front, double thickness, double index) {
   const double tau = thickness / 1000 / index;
   const double back = power - front / (1 - tau * front);
   SphericalLens made;
@@ -38,30 +32,30 @@ SphericalLens MakeLens(double power, double front, double thickness, double inde
   return made;
 }
 
-constexpr double kNineDecimals = 0.5e-9 + 1e-12;
+constexpr double kViewDecimals = 0.5e-9 + 1e-12;
 
 TEST(SpectacleMagnification, MatchesPublishedCases) {
   // +4 D, front +8, 4 mm, 15 mm, n 1.498: 1.022 x 1.064 = 1.087.
   EXPECT_NEAR(ShapeFactor(Diopters(8), 4, 1.498), 1.02183, 0.5e-5);
   EXPECT_NEAR(PowerFactor(Diopters(4), 15), 1.06383, 0.5e-5);
-  EXPECT_NEAR(SpectacleMagnification(MakeLens(4, 8, 4, 1.498).system, 15), 1.08705, 0.5e-5);
+  EXPECT_NEAR(SpectacleMagnification(MakeSphericalLens(4, 8, 4, 1.498).system, 15), 1.08705, 0.5e-5);
   // -3 D, front +4, 2 mm, 15 mm: 1.005, 0.957, 0.962.
-  EXPECT_NEAR(SpectacleMagnification(MakeLens(-3, 4, 2, 1.498).system, 15), 0.96208, 0.5e-5);
+  EXPECT_NEAR(SpectacleMagnification(MakeSphericalLens(-3, 4, 2, 1.498).system, 15), 0.96208, 0.5e-5);
 }
 
 TEST(SpectacleMagnification, IsShapeTimesPower) {
-  const auto made = MakeLens(-6, 2, 1.5, 1.6);
+  const auto made = MakeSphericalLens(-6, 2, 1.5, 1.6);
   EXPECT_NEAR(SpectacleMagnification(made.system, 15.05),
               ShapeFactor(Diopters(2), 1.5, 1.6) * PowerFactor(Diopters(-6), 15.05), 1e-15);
 }
 
 TEST(SpectacleMagnification, MatrixMatchesGoldenC2) {
-  const auto s =
-      AstigmaticSystem::ThickLens(PowerMatrix(6, 3, 30), PowerMatrix(-9, -4, 75), 5, 1.6);
+  const auto s = AstigmaticSystem::ThickLens(test::PowerMatrix(6, 3, 30),
+                                             test::PowerMatrix(-9, -4, 75), 5, 1.6);
   const Matrix2d sm = SpectacleMagnification(s, 15);
   EXPECT_NEAR(sm(0, 0), 0.93944806, 0.5e-8);  // printed to 8 decimals
-  EXPECT_NEAR(sm(0, 1), -0.0089822293, kNineDecimals);
-  EXPECT_NEAR(sm(1, 0), -0.0092502434, kNineDecimals);
+  EXPECT_NEAR(sm(0, 1), -0.0089822293, kViewDecimals);
+  EXPECT_NEAR(sm(1, 0), -0.0092502434, kViewDecimals);
   EXPECT_NEAR(sm(1, 1), 1.0144487, 0.5e-7);
 }
 
@@ -73,19 +67,19 @@ TEST(ObserverParaxial, MatchesGoldenC3) {
        {Case{-6, 2, 1.5, 1.6, 500, 0.922034867}, Case{6, 9, 5, 1.6, 500, 1.129596369},
         Case{-12, 1, 1.2, 1.74, 600, 0.851472673}}) {
     const auto view =
-        ObserverParaxial(MakeLens(c.power, c.front, c.t, c.n).system, c.t, {c.camera, 15.05});
-    EXPECT_NEAR(view.magnification, c.magnification, kNineDecimals);
+        ObserverParaxial(MakeSphericalLens(c.power, c.front, c.t, c.n).system, c.t, {c.camera, 15.05});
+    EXPECT_NEAR(view.magnification, c.magnification, kViewDecimals);
   }
-  const auto minus = ObserverParaxial(MakeLens(-6, 2, 1.5, 1.6).system, 1.5, {500, 15.05});
+  const auto minus = ObserverParaxial(MakeSphericalLens(-6, 2, 1.5, 1.6).system, 1.5, {500, 15.05});
   EXPECT_NEAR(minus.lateral, 0.9189017, 0.5e-7);
   EXPECT_NEAR(minus.apparent_depth_mm, 14.7947, 0.5e-4);
-  const auto plus = ObserverParaxial(MakeLens(6, 9, 5, 1.6).system, 5, {500, 15.05});
+  const auto plus = ObserverParaxial(MakeSphericalLens(6, 9, 5, 1.6).system, 5, {500, 15.05});
   EXPECT_NEAR(plus.lateral, 1.131075, 0.5e-6);
   EXPECT_NEAR(plus.apparent_depth_mm, 20.7307, 0.5e-4);
 }
 
 TEST(ObserverParaxial, MagnificationFollowsFromTheImage) {
-  const auto view = ObserverParaxial(MakeLens(6, 9, 5, 1.6).system, 5, {500, 15.05});
+  const auto view = ObserverParaxial(MakeSphericalLens(6, 9, 5, 1.6).system, 5, {500, 15.05});
   EXPECT_NEAR(view.magnification, view.lateral * (500 + 5 + 15.05) / (500 + view.apparent_depth_mm),
               1e-14);
 }
@@ -104,8 +98,8 @@ TEST(ObserverMagnification, FromInfinityIsTheTransposeOfTheWearers) {
   for (int i = 0; i < 10000; ++i) {
     const double thickness = t(random);
     const auto s = AstigmaticSystem::ThickLens(
-        PowerMatrix(power(random), power(random) / 3, angle(random)),
-        PowerMatrix(power(random), power(random) / 3, angle(random)), thickness, n(random));
+        test::PowerMatrix(power(random), power(random) / 3, angle(random)),
+        test::PowerMatrix(power(random), power(random) / 3, angle(random)), thickness, n(random));
     // At 1e9 mm the finite-distance terms are below 1e-7 of the whole.
     const Matrix2d seen = ObserverMagnification(s, thickness, {1e12, 15});
     worst = std::max(worst, (seen - SpectacleMagnification(s, 15).transpose()).norm());
@@ -115,7 +109,7 @@ TEST(ObserverMagnification, FromInfinityIsTheTransposeOfTheWearers) {
 }
 
 TEST(SpectacleMagnificationNear, IsWhatACameraAtTheObjectSeesOfThePupil) {
-  const auto made = MakeLens(5, 8, 4, 1.6);
+  const auto made = MakeSphericalLens(5, 8, 4, 1.6);
   for (const double distance : {250.0, 400.0, 2000.0}) {
     EXPECT_NEAR(SpectacleMagnificationNear(made.system, 4, 15, distance),
                 ObserverParaxial(made.system, 4, {distance, 15}).magnification, 1e-14);
@@ -125,7 +119,7 @@ TEST(SpectacleMagnificationNear, IsWhatACameraAtTheObjectSeesOfThePupil) {
 }
 
 TEST(ObserverExact, MatchesTheLadderOfGoldenC8) {
-  const auto made = MakeLens(-6, 2, 1.5, 1.6);
+  const auto made = MakeSphericalLens(-6, 2, 1.5, 1.6);
   struct Row {
     double height, magnification;
   };
@@ -145,7 +139,7 @@ TEST(ObserverExact, ApproachesTheClosedFormOnTheAxis) {
   constexpr double kNearAxis = 1e-9;
   for (const Case& c : {Case{-6, 2, 1.5, 1.6}, Case{6, 9, 5, 1.6}, Case{-12, 1, 1.2, 1.74},
                         Case{0, 6, 2, 1.5}, Case{20, 22, 9, 1.74}}) {
-    const auto made = MakeLens(c.power, c.front, c.t, c.n);
+    const auto made = MakeSphericalLens(c.power, c.front, c.t, c.n);
     const ObserverGeometry geometry{500, 15.05};
     const auto ray = ObserverExact(made.lens, c.n, geometry, Vector2d(0, 0));
     ASSERT_TRUE(ray);
@@ -177,7 +171,7 @@ TEST(ObserverExact, FollowsTheMatrixFormOfAToricLensNearTheAxis) {
 
 TEST(ObserverExact, ReturnsNulloptWhenTheFeatureCannotBeSeen) {
   // -20 D, front +0.5: the back surface ends 24.4 mm from the axis.
-  const auto made = MakeLens(-20, 0.5, 1.5, 1.5);
+  const auto made = MakeSphericalLens(-20, 0.5, 1.5, 1.5);
   EXPECT_FALSE(ObserverExact(made.lens, 1.5, {500, 15.05}, Vector2d(0, 80)));
   EXPECT_TRUE(ObserverExact(made.lens, 1.5, {500, 15.05}, Vector2d(0, 5)));
 }

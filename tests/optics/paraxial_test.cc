@@ -9,20 +9,14 @@
 #include <limits>
 #include <random>
 
+#include "tests/optics/power_matrix.h"
+
 namespace lorgnette {
 namespace {
 
 using Eigen::Matrix2d;
 
 // Long's matrix for a cylinder axis given as a mathematical angle in a right-handed frame.
-Matrix2d PowerMatrix(double sphere, double cylinder, double angle_deg) {
-  const double a = RadiansFromDegrees(angle_deg);
-  const double s = std::sin(a), c = std::cos(a);
-  Matrix2d m;
-  m << sphere + cylinder * s * s, -cylinder * s * c, -cylinder * s * c, sphere + cylinder * c * c;
-  return m;
-}
-
 // Published values are printed to this many decimals.
 constexpr double kTwoDecimals = 0.005 + 1e-9;
 constexpr double kNineDecimals = 0.5e-9 + 1e-12;
@@ -76,7 +70,7 @@ TEST(ParaxialSystem, ConcentricLensHasItsPrincipalPointsAtTheCommonCentre) {
 }
 
 TEST(AstigmaticSystem, MatchesGoldenC2) {
-  const Matrix2d f1 = PowerMatrix(6, 3, 30), f2 = PowerMatrix(-9, -4, 75);
+  const Matrix2d f1 = test::PowerMatrix(6, 3, 30), f2 = test::PowerMatrix(-9, -4, 75);
   const auto s = AstigmaticSystem::ThickLens(f1, f2, 5, 1.6);
   const Matrix2d fv = s.BackVertexPower();
   EXPECT_NEAR(fv(0, 0), -5.830951006, kNineDecimals);
@@ -87,7 +81,7 @@ TEST(AstigmaticSystem, MatchesGoldenC2) {
 }
 
 TEST(AstigmaticSystem, VertexPowersMatchTheirClosedForms) {
-  const Matrix2d f1 = PowerMatrix(6, 3, 30), f2 = PowerMatrix(-9, -4, 75);
+  const Matrix2d f1 = test::PowerMatrix(6, 3, 30), f2 = test::PowerMatrix(-9, -4, 75);
   const double tau = 0.005 / 1.6;
   const auto s = AstigmaticSystem::ThickLens(f1, f2, 5, 1.6);
   const Matrix2d back = f2 + f1 * (Matrix2d::Identity() - tau * f1).inverse();
@@ -107,8 +101,8 @@ TEST(AstigmaticSystem, RandomLensesAreSymplecticAndReverseToSwappedVertexPowers)
   };
   double worst_symplectic = 0, worst_reversal = 0;
   for (int i = 0; i < 10000; ++i) {
-    const Matrix2d f1 = PowerMatrix(power(), power(), angle(random));
-    const Matrix2d f2 = PowerMatrix(power(), power(), angle(random));
+    const Matrix2d f1 = test::PowerMatrix(power(), power(), angle(random));
+    const Matrix2d f2 = test::PowerMatrix(power(), power(), angle(random));
     const double t = thickness(random), n = index(random);
     const auto s = AstigmaticSystem::ThickLens(f1, f2, t, n);
     const auto reversed = AstigmaticSystem::ThickLens(f2, f1, t, n);
@@ -187,11 +181,11 @@ TEST(MovedTowardEye, MatchesPublishedVertexCompensations) {
 }
 
 TEST(MovedTowardEye, MatrixFormActsOnEachPrincipalMeridian) {
-  const Matrix2d moved = MovedTowardEye(PowerMatrix(-5, -3, 25), 12);
-  const Matrix2d expected = PowerMatrix(-5 / 1.06, -8 / (1 + 0.012 * 8) + 5 / 1.06, 25);
+  const Matrix2d moved = MovedTowardEye(test::PowerMatrix(-5, -3, 25), 12);
+  const Matrix2d expected = test::PowerMatrix(-5 / 1.06, -8 / (1 + 0.012 * 8) + 5 / 1.06, 25);
   EXPECT_LT((moved - expected).cwiseAbs().maxCoeff(), 1e-14);
   const Matrix2d back = MovedTowardEye(moved, -12);
-  EXPECT_LT((back - PowerMatrix(-5, -3, 25)).cwiseAbs().maxCoeff(), 1e-14);
+  EXPECT_LT((back - test::PowerMatrix(-5, -3, 25)).cwiseAbs().maxCoeff(), 1e-14);
 }
 
 }  // namespace

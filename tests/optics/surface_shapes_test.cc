@@ -41,7 +41,7 @@ Surface CubicGrid() {
   return GridSurface{std::make_shared<SplineGrid>(SplineGrid::Through(sag, -20, -24, 2, 2, 0))};
 }
 
-std::vector<Surface> Zoo() {
+std::vector<Surface> Shapes() {
   return {ConicSurface{1 / 60.0, -1.7, {1e-7, -2e-10, 3e-13, -1e-16}},
           ConicSurface{-1 / 40.0, 2.5, {}},
           ConicSurface{0, 0, {2e-6, 0, 0, 0}},
@@ -55,7 +55,7 @@ std::vector<Surface> Zoo() {
 
 TEST(SurfaceShapes, DerivativesAgreeWithDifferences) {
   constexpr double kStep = 1e-4, kFirst = 1e-8, kSecond = 1e-7;  // h^2 f''' / 6 and eps f / h
-  for (const Surface& s : Zoo()) {
+  for (const Surface& s : Shapes()) {
     for (const auto& [x, y] : {std::pair{3.0, -7.0}, {0.0, 0.0}, {-11.0, 5.0}, {6.0, -17.0}}) {
       const auto jet = s.Jet(x, y);
       ASSERT_TRUE(jet) << s.shape().index();
@@ -72,7 +72,7 @@ TEST(SurfaceShapes, DerivativesAgreeWithDifferences) {
 
 TEST(SurfaceShapes, RaysMeetThem) {
   const Eigen::Vector3d d = Eigen::Vector3d(0.15, -0.2, 1).normalized();
-  for (const Surface& s : Zoo()) {
+  for (const Surface& s : Shapes()) {
     for (double x = -12; x <= 12; x += 4) {
       const Eigen::Vector3d start = Eigen::Vector3d(x, 0.7 * x - 2, 0) - 25 * d;
       const auto hit = s.Intersect({start, d});

@@ -6,19 +6,10 @@
 #include <cmath>
 #include <iostream>
 
+#include "tests/optics/orders.h"
+
 namespace lorgnette {
 namespace {
-
-LensOrder Order(double s, double c = 0, double a = 180, Eye eye = Eye::kRight) {
-  LensOrder order;
-  order.eye = eye;
-  order.rx.sphere = Diopters(s);
-  order.rx.cylinder = Diopters(c);
-  order.rx.axis = AxisDegrees(a);
-  order.medium.index_d = 1.6;
-  order.diameter_mm = 50;
-  return order;
-}
 
 // C9: -5 -3 x 25, n = 1.6, tilted by 18 degrees about x.
 TEST(ThinTilted, HasTheGoldenMatrix) {
@@ -41,7 +32,7 @@ TEST(MartinTilted, HasThePublishedPower) {
 // A lens thinned toward nothing tends to the closed form; 1e-4 mm leaves tau F^2 of some 1e-5 D.
 TEST(MeasureWorn, TendsToTheThinClosedForm) {
   constexpr double kThin_mm = 1e-4, kBound_D = 2e-5;
-  LensOrder order = Order(-5, -3, 25);
+  LensOrder order = test::Order160(-5, -3, 25);
   order.center_thickness_mm = kThin_mm;
   order.base_curve = Diopters(2);
   const LensDesign design = *DesignLens(order);
@@ -56,7 +47,7 @@ TEST(MeasureWorn, TendsToTheThinClosedForm) {
 
 // Thick plus lenses leave Martin's rule: +15 D, n = 1.5, F1 = 16, t = 8, 10 degrees.
 TEST(MeasureWorn, HasTheReferencesThickLens) {
-  LensOrder order = Order(15);
+  LensOrder order = test::Order160(15);
   order.medium.index_d = 1.5;
   order.base_curve = Diopters(16);
   order.center_thickness_mm = 8;
@@ -71,7 +62,7 @@ TEST(MeasureWorn, HasTheReferencesThickLens) {
 }
 
 TEST(MeasureWorn, StraightLensGivesItsBackVertexPower) {
-  const WornPower worn = *MeasureWorn(DesignLens(Order(-4, -2, 70))->lens, Eye::kLeft, {});
+  const WornPower worn = *MeasureWorn(DesignLens(test::Order160(-4, -2, 70))->lens, Eye::kLeft, {});
   const PowerVector ordered = PowerVectorOf({Diopters(-4), Diopters(-2), AxisDegrees(70)});
   EXPECT_NEAR(worn.power.mean, ordered.mean, 1e-10);
   EXPECT_NEAR(worn.power.j0, ordered.j0, 1e-10);
@@ -81,7 +72,7 @@ TEST(MeasureWorn, StraightLensGivesItsBackVertexPower) {
 
 // Face form gives plano lenses prism with the base out: 100 tau F1 tan t / (1 - tau F1).
 TEST(MeasureWorn, FaceFormGivesBaseOutPrism) {
-  LensOrder order = Order(0);
+  LensOrder order = test::Order160(0);
   order.base_curve = Diopters(8);
   order.center_thickness_mm = 2;
   for (const Eye eye : {Eye::kRight, Eye::kLeft}) {
@@ -100,9 +91,9 @@ TEST(MeasureWorn, FaceFormGivesBaseOutPrism) {
 TEST(MeasureWorn, MirrorsBetweenTheEyes) {
   const WearPosition wear{9, 12, 13};
   const WornPower right =
-      *MeasureWorn(DesignLens(Order(-6, -2, 25, Eye::kRight))->lens, Eye::kRight, wear);
+      *MeasureWorn(DesignLens(test::Order160(-6, -2, 25))->lens, Eye::kRight, wear);
   const WornPower left =
-      *MeasureWorn(DesignLens(Order(-6, -2, 155, Eye::kLeft))->lens, Eye::kLeft, wear);
+      *MeasureWorn(DesignLens(test::Order160(-6, -2, 155))->lens, Eye::kLeft, wear);
   EXPECT_NEAR(right.power.mean, left.power.mean, 1e-11);
   EXPECT_NEAR(right.power.j0, left.power.j0, 1e-11);
   EXPECT_NEAR(right.power.j45, -left.power.j45, 1e-11);
@@ -113,7 +104,7 @@ TEST(MeasureWorn, MirrorsBetweenTheEyes) {
 TEST(CompensateForWear, RestoresThePrescriptionByRays) {
   for (const auto& [s, c, a] :
        {std::tuple{-7.0, -2.0, 30.0}, {5.0, -1.5, 120.0}, {9.0, 0.0, 180.0}, {0.0, -4.0, 45.0}}) {
-    LensOrder order = Order(s, c, a);
+    LensOrder order = test::Order160(s, c, a);
     const WearPosition wear{10, 8, 11};
     const auto result = CompensateForWear(order, 13, wear);
     ASSERT_TRUE(result) << result.error().message;
@@ -131,14 +122,14 @@ TEST(CompensateForWear, RestoresThePrescriptionByRays) {
 }
 
 TEST(CompensateForWear, DoesNothingForAStraightLensAtTheSameDistance) {
-  const auto result = CompensateForWear(Order(-4, -1, 10), 13, {0, 0, 13});
+  const auto result = CompensateForWear(test::Order160(-4, -1, 10), 13, {0, 0, 13});
   ASSERT_TRUE(result);
   EXPECT_NEAR(result->design.order.rx.sphere.value(), -4, 1e-9);
   EXPECT_NEAR(result->design.order.rx.cylinder.value(), -1, 1e-9);
 }
 
 TEST(CompensateForWear, RefusesAbsurdTilts) {
-  EXPECT_FALSE(CompensateForWear(Order(-4), 13, {60, 0, 13}));
+  EXPECT_FALSE(CompensateForWear(test::Order160(-4), 13, {60, 0, 13}));
 }
 
 }  // namespace

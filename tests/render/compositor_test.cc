@@ -27,8 +27,8 @@ ImageRgbF Pattern(int width, int height) {
   return image;
 }
 
-constexpr int kWidth = 240, kHeight = 120;
-test::View Front() { return test::ViewFrom(0, 0, 500, kWidth, kHeight, 800); }
+constexpr int kViewWidth = 240, kViewHeight = 120;
+test::View Front() { return test::ViewFrom(0, 0, 500, kViewWidth, kViewHeight, 800); }
 
 Compositor Make(const Eyewear& eyewear, const TriangleMesh& face, const Environment& environment,
                 const CompositorOptions& options) {
@@ -40,15 +40,15 @@ Compositor Make(const Eyewear& eyewear, const TriangleMesh& face, const Environm
 TEST(Compositor, ChangesNoPixelBesideTheEyewear) {
   CompositorOptions options;
   options.shadow = ShadowMode::kNone;
-  const ImageRgbF input = Pattern(kWidth, kHeight);
+  const ImageRgbF input = Pattern(kViewWidth, kViewHeight);
   const test::View view = Front();
   const Compositor compositor =
       Make(test::MakeEyewear({}), test::Wall(400, 0), Environment::Constant({1, 1, 1}), options);
   const ImageRgbF output = compositor.Render(input, view.camera, view.camera_from_head);
   const ImageRgbaF hits = compositor.HitMap(view.camera, view.camera_from_head);
   int same = 0, changed = 0;
-  for (int y = 1; y + 1 < kHeight; ++y) {
-    for (int x = 1; x + 1 < kWidth; ++x) {
+  for (int y = 1; y + 1 < kViewHeight; ++y) {
+    for (int x = 1; x + 1 < kViewWidth; ++x) {
       bool beside = true;
       for (int dy = -1; dy <= 1; ++dy) {
         for (int dx = -1; dx <= 1; ++dx) beside = beside && hits.at(x + dx, y + dy)[3] == 5;
@@ -61,7 +61,7 @@ TEST(Compositor, ChangesNoPixelBesideTheEyewear) {
       changed += !equal;
     }
   }
-  EXPECT_GT(same, kWidth * kHeight / 4);
+  EXPECT_GT(same, kViewWidth * kViewHeight / 4);
   EXPECT_GT(changed, 2000);
 }
 
@@ -74,7 +74,7 @@ TEST(Compositor, ShowsNoLensInAWhiteFurnace) {
     options.finish.edge = EdgeFinish::kPolished;
     options.max_internal_bounces = 16;
     const test::View view = Front();
-    const ImageRgbF input = test::ConstantImage(kWidth, kHeight, 1);
+    const ImageRgbF input = test::ConstantImage(kViewWidth, kViewHeight, 1);
     const ImageRgbF output = Make(test::MakeEyewear(recipe), test::Wall(600, 0),
                                   Environment::Constant({1, 1, 1}), options)
                                  .Render(input, view.camera, view.camera_from_head);
@@ -92,7 +92,7 @@ TEST(Compositor, ShowsNoLensInAWhiteFurnace) {
 }
 
 TEST(Compositor, GivesTheSamePixelsOnAnyNumberOfThreads) {
-  const ImageRgbF input = Pattern(kWidth, kHeight);
+  const ImageRgbF input = Pattern(kViewWidth, kViewHeight);
   const test::View view = Front();
   ImageRgbF results[2];
   for (const bool adaptive : {false, true}) {
@@ -111,8 +111,8 @@ TEST(Compositor, GivesTheSamePixelsOnAnyNumberOfThreads) {
 
 // Strong lenses, so that rays read the picture far from where they entered it.
 TEST(Compositor, DrawsTheSameFromAndToDisplayEncodedPixels) {
-  const ImageRgb8 input = DisplayFromLinear(Pattern(kWidth, kHeight));
-  const test::View view = test::ViewFrom(0, 0, 500, kWidth, kHeight, 500);
+  const ImageRgb8 input = DisplayFromLinear(Pattern(kViewWidth, kViewHeight));
+  const test::View view = test::ViewFrom(0, 0, 500, kViewWidth, kViewHeight, 500);
   for (const bool adaptive : {false, true}) {
     CompositorOptions options;
     options.adaptive = adaptive;
@@ -137,7 +137,7 @@ double Psnr(const ImageRgbF& a, const ImageRgbF& b) {
 }
 
 TEST(Compositor, LooksTheSameWithAdaptiveSamples) {
-  const ImageRgbF input = Pattern(kWidth, kHeight);
+  const ImageRgbF input = Pattern(kViewWidth, kViewHeight);
   const test::View view = Front();
   CompositorOptions options;
   RenderCounts full_counts, adaptive_counts;
@@ -154,7 +154,7 @@ TEST(Compositor, LooksTheSameWithAdaptiveSamples) {
 }
 
 TEST(Compositor, DarkensTheSkinBelowTheFrameInBothModes) {
-  const ImageRgbF input = test::ConstantImage(kWidth, kHeight, 0.5f);
+  const ImageRgbF input = test::ConstantImage(kViewWidth, kViewHeight, 0.5f);
   const test::View view = Front();
   CompositorOptions options;
   options.shadow_rays = 1000;
@@ -174,7 +174,7 @@ TEST(Compositor, DarkensTheSkinBelowTheFrameInBothModes) {
 }
 
 TEST(Compositor, LeavesOutWhatIsSwitchedOff) {
-  const ImageRgbF input = Pattern(kWidth, kHeight);
+  const ImageRgbF input = Pattern(kViewWidth, kViewHeight);
   const test::View view = Front();
   CompositorOptions options;
   options.effects = EffectSet::None();
@@ -238,7 +238,7 @@ TEST(Compositor, LeavesAnEightKPictureAloneBesideTheFace) {
 }
 
 TEST(Compositor, PassesOverTrianglesWithoutArea) {
-  const ImageRgb8 input = DisplayFromLinear(Pattern(kWidth, kHeight));
+  const ImageRgb8 input = DisplayFromLinear(Pattern(kViewWidth, kViewHeight));
   const test::View view = Front();
   TriangleMesh wall = test::Wall(400, 0), spoilt = wall;
   const int last = int(spoilt.positions.size()) - 1;
@@ -269,7 +269,7 @@ TEST(Compositor, MatchesTheExposureOfAGreyFace) {
   Compositor compositor = Make(test::MakeEyewear({}), test::Wall(200, 0),
                                Environment::Constant({2, 2, 2}), CompositorOptions{});
   // A wall of albedo 0.4 under light of 2 has radiance 0.8.
-  const double scale = compositor.MatchExposure(test::ConstantImage(kWidth, kHeight, 0.2f),
+  const double scale = compositor.MatchExposure(test::ConstantImage(kViewWidth, kViewHeight, 0.2f),
                                                 view.camera, view.camera_from_head);
   EXPECT_NEAR(scale, 0.25, 0.005);
 }

@@ -13,16 +13,16 @@
 namespace lorgnette {
 namespace {
 
-constexpr int kWidth = 96, kHeight = 64;
+constexpr int kPlanWidth = 96, kPlanHeight = 64;
 // A picture knows where an edge lies to the distance of its samples.
 constexpr int kSamples = 4;
 constexpr double kExplained_px = EffectBudget{}.shift_px + 1.0 / kSamples;
 
 // Smooth waves, and edges every 11 pixels on request: something to shift.
 ImageRgbF Skin(float level, bool edges) {
-  ImageRgbF image(kWidth, kHeight);
-  for (int y = 0; y < kHeight; ++y) {
-    for (int x = 0; x < kWidth; ++x) {
+  ImageRgbF image(kPlanWidth, kPlanHeight);
+  for (int y = 0; y < kPlanHeight; ++y) {
+    for (int x = 0; x < kPlanWidth; ++x) {
       const float wave = 1 + 0.3f * std::sin(0.3f * float(x)) * std::sin(0.25f * float(y));
       const float step = edges && x / 11 % 2 == 0 ? 0.35f : 1.0f;
       image.at(x, y)[0] = level * wave * step;
@@ -76,8 +76,9 @@ Drawn Draw(Scene scene) {
   auto compositor = Compositor::Create(eyewear, test::Wall(160, 0, 10), TriangleMesh{},
                                        Room(scene.room, scene.lamp), scene.options);
   EXPECT_TRUE(compositor) << compositor.error().message;
-  return {*std::move(compositor), Skin(scene.skin, scene.edges),
-          test::ViewFrom(scene.x_mm, 0, scene.distance_mm, kWidth, kHeight, scene.focal_px)};
+  return {
+      *std::move(compositor), Skin(scene.skin, scene.edges),
+      test::ViewFrom(scene.x_mm, 0, scene.distance_mm, kPlanWidth, kPlanHeight, scene.focal_px)};
 }
 
 double Code(float linear) { return 255 * SrgbFromLinear(std::clamp(double(linear), 0.0, 1.0)); }

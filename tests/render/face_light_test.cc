@@ -11,7 +11,7 @@
 namespace lorgnette {
 namespace {
 
-constexpr int kWidth = 100, kHeight = 100;
+constexpr int kFaceWidth = 100, kFaceHeight = 100;
 
 // The front of a sphere of 70 mm radius: a head without features.
 TriangleMesh HalfSphere() {
@@ -59,12 +59,12 @@ Eigen::Vector3d Shade(const Eigen::Vector3d& n, const Eigen::Vector3d& from) {
 
 TEST(FaceLight, FindsTheSideThatTheLightComesFrom) {
   const TriangleMesh face = HalfSphere();
-  const test::View view = test::ViewFrom(0, 0, 600, kWidth, kHeight, 350);
+  const test::View view = test::ViewFrom(0, 0, 600, kFaceWidth, kFaceHeight, 350);
   const Eigen::Vector3d from = Eigen::Vector3d(0.8, 0.4, 0.5).normalized();
   // The picture: every pixel on the sphere by its normal (head and world axes agree here).
-  ImageRgbF input(kWidth, kHeight);
-  for (int y = 0; y < kHeight; ++y) {
-    for (int x = 0; x < kWidth; ++x) {
+  ImageRgbF input(kFaceWidth, kFaceHeight);
+  for (int y = 0; y < kFaceHeight; ++y) {
+    for (int x = 0; x < kFaceWidth; ++x) {
       const Eigen::Vector3d c = view.camera.Direction(x + 0.5, y + 0.5).normalized();
       const Eigen::Vector3d d(c.x(), -c.y(), -c.z()), eye(0, 0, 600);
       const double b = -eye.dot(d), under = b * b - 600.0 * 600 + 70 * 70;
@@ -112,12 +112,12 @@ TEST(FaceLight, FindsTheSideThatTheLightComesFrom) {
 }
 
 TEST(FaceLight, NeedsAFaceInThePicture) {
-  const test::View beside = test::ViewFrom(2000, 0, 600, kWidth, kHeight, 350);
-  EXPECT_FALSE(FitFaceLight(test::ConstantImage(kWidth, kHeight, 0.3f), beside.camera,
+  const test::View beside = test::ViewFrom(2000, 0, 600, kFaceWidth, kFaceHeight, 350);
+  EXPECT_FALSE(FitFaceLight(test::ConstantImage(kFaceWidth, kFaceHeight, 0.3f), beside.camera,
                             beside.camera_from_head, HalfSphere(),
                             CompositorOptions{}.world_from_camera));
-  const test::View view = test::ViewFrom(0, 0, 600, kWidth, kHeight, 350);
-  EXPECT_FALSE(FitFaceLight(test::ConstantImage(kWidth, kHeight, 0), view.camera,
+  const test::View view = test::ViewFrom(0, 0, 600, kFaceWidth, kFaceHeight, 350);
+  EXPECT_FALSE(FitFaceLight(test::ConstantImage(kFaceWidth, kFaceHeight, 0), view.camera,
                             view.camera_from_head, HalfSphere(),
                             CompositorOptions{}.world_from_camera));
 }

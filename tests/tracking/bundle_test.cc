@@ -8,11 +8,11 @@
 namespace lorgnette {
 namespace {
 
-using testing::AngleDeg;
-using testing::TestPose;
+using test::AngleDeg;
+using test::TestPose;
 
 struct Scene {
-  Camera camera = testing::TestCamera();
+  Camera camera = test::TestCamera();
   std::vector<Eigen::Isometry3d> poses;
   std::vector<Eigen::Vector3d> points;
   std::vector<BundleSighting> sightings;
@@ -22,7 +22,7 @@ struct Scene {
       poses.push_back(TestPose(yaw, yaw / 3));
       poses.back().translation().z() += 4 * yaw;
     }
-    const auto all = testing::SyntheticCanonical().mesh.positions;
+    const auto all = test::SyntheticCanonical().mesh.positions;
     points.assign(all.begin(), all.begin() + 120);
     for (std::size_t f = 0; f < poses.size(); ++f) {
       for (std::size_t p = 0; p < points.size(); ++p) {
@@ -82,7 +82,7 @@ TEST(FitBundle, HoldsAKnownFocalLengthAndTheFixedFrame) {
 }
 
 TEST(FitBundle, IsNotUsableWithoutSightings) {
-  Camera camera = testing::TestCamera();
+  Camera camera = test::TestCamera();
   std::vector<Eigen::Isometry3d> poses{TestPose(0)};
   std::vector<BundlePoint> points;
   EXPECT_FALSE(FitBundle({}, {}, camera, poses, points).usable);

@@ -12,11 +12,11 @@
 namespace lorgnette {
 namespace {
 
-using testing::BoardPainter;
-using testing::BoardPose;
-using testing::BoardPoses;
+using test::BoardPainter;
+using test::BoardPose;
+using test::BoardPoses;
+using test::WideCamera;
 using ::testing::HasSubstr;
-using testing::WideCamera;
 
 const Chessboard kBoard{9, 6, 25};
 

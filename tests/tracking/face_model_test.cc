@@ -12,10 +12,10 @@
 namespace lorgnette {
 namespace {
 
-using testing::AngleDeg;
-using testing::SyntheticCanonical;
-using testing::TestCamera;
-using testing::TestPose;
+using test::AngleDeg;
+using test::SyntheticCanonical;
+using test::TestCamera;
+using test::TestPose;
 
 FaceLandmarks Seen(const std::vector<Eigen::Vector3d>& head, const Eigen::Isometry3d& pose) {
   FaceLandmarks landmarks;

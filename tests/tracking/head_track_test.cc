@@ -26,7 +26,7 @@ std::string TemporaryPath(const std::string& name) {
 
 HeadTrack SmallTrack() {
   HeadTrack track;
-  track.camera = testing::TestCamera();
+  track.camera = test::TestCamera();
   track.pd_mm = 61.5;
   track.distortion = {-0.1, 0.02, 0.001, -0.002, 0.003};
   track.iris_pd_mm = 62.25;
@@ -39,7 +39,7 @@ HeadTrack SmallTrack() {
   TrackedFrame found;
   found.time_s = 0;
   found.found = true;
-  found.camera_from_head = testing::TestPose(17, -4);
+  found.camera_from_head = test::TestPose(17, -4);
   found.residual_px = 1.5f;
   found.iris_left = Eigen::Vector2f(100.5f, 200.25f);
   for (const Eigen::Vector3d& p : track.face.positions) found.vertices.push_back(p.cast<float>());

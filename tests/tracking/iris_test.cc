@@ -11,8 +11,8 @@
 namespace lorgnette {
 namespace {
 
-using testing::TestCamera;
-using testing::TestPose;
+using test::TestCamera;
+using test::TestPose;
 
 constexpr double kPd = 63.5;
 const Eigen::Vector3d kApex(-kPd / 2, 0, 0);

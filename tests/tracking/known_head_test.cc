@@ -12,23 +12,19 @@
 #include "cmake/source_dir.h"
 #include "tests/tracking/rendered_head.h"
 #include "tests/tracking/synthetic_face.h"
+#include "tests/tracking/test_inputs.h"
 #include "tracking/face_follower.h"
 #include "tracking/tracker.h"
 
 namespace lorgnette {
 namespace {
 
-using testing::AngleDeg;
-using testing::RenderedHead;
-using testing::TestPose;
+using test::AngleDeg;
+using test::RenderedHead;
+using test::TestPose;
 
-const std::string kModels = LORGNETTE_SOURCE_DIR "/cache/models";
-const std::string kTruth = LORGNETTE_SOURCE_DIR "/../shared/data/groundtruth";
 const std::string kPortrait = LORGNETTE_SOURCE_DIR "/../shared/data/photo/astronaut.png";
 constexpr double kRate = 25;
-
-#define NEED(path) \
-  if (!std::filesystem::exists(path)) GTEST_SKIP() << "needs " << (path)
 
 // A picture file in the middle of a frame of 480 x 360, moved by a few pixels.
 ImageRgb8 Shot(const std::string& path, int shift) {
@@ -43,7 +39,7 @@ ImageRgb8 Shot(const std::string& path, int shift) {
 }
 
 HeadTrack Track(const std::vector<ImageRgb8>& frames, const std::optional<Camera>& camera) {
-  auto tracker = Tracker::Create({kModels, 64, 0, camera});
+  auto tracker = Tracker::Create({test::kModels, 64, 0, camera});
   EXPECT_TRUE(tracker) << tracker.error().message;
   for (std::size_t i = 0; i < frames.size(); ++i) {
     EXPECT_TRUE(tracker->Add(frames[i], double(i) / kRate));
@@ -54,9 +50,9 @@ HeadTrack Track(const std::vector<ImageRgb8>& frames, const std::optional<Camera
 }
 
 TEST(Tracker, FollowsAKnownHeadThroughATurnForwardAndBackward) {
-  NEED(kModels);
-  const auto head = RenderedHead::Read(kTruth);
-  if (!head) GTEST_SKIP() << "needs " << kTruth;
+  NEED(test::kModels);
+  const auto head = RenderedHead::Read(test::kTruth);
+  if (!head) GTEST_SKIP() << "needs " << test::kTruth;
   const Camera camera{480, 360, 840, 840, 240, 180};
   std::vector<Eigen::Isometry3d> truth;
   std::vector<ImageRgb8> frames;
@@ -93,18 +89,18 @@ TEST(Tracker, FollowsAKnownHeadThroughATurnForwardAndBackward) {
 }
 
 TEST(Tracker, HandlesCutsAndLostFacesOfAFilmPutTogether) {
-  NEED(kModels);
-  NEED(kTruth);
+  NEED(test::kModels);
+  NEED(test::kTruth);
   NEED(kPortrait);
-  const std::string first = kTruth + "/pose_y0p0/input.png";
+  const std::string first = test::kTruth + "/pose_y0p0/input.png";
   std::vector<ImageRgb8> frames;
   for (int i = 0; i < 5; ++i) frames.push_back(Shot(first, 2 * i));
   for (int i = 0; i < 3; ++i) frames.emplace_back(480, 360);  // black
   for (int i = 0; i < 5; ++i) frames.push_back(Shot(kPortrait, -2 * i));
   for (int i = 0; i < 5; ++i) frames.push_back(Shot(first, 40 - 2 * i));  // a hard cut
-  const auto canonical = ReadCanonicalMesh(kModels + "/canonical_face.obj");
+  const auto canonical = ReadCanonicalMesh(test::kModels + "/canonical_face.obj");
   ASSERT_TRUE(canonical);
-  auto follower = FaceFollower::Load(kModels, *canonical);
+  auto follower = FaceFollower::Load(test::kModels, *canonical);
   ASSERT_TRUE(follower);
   for (std::size_t i = 0; i < frames.size(); ++i) {
     const FollowedFrame followed = follower->Next(frames[i], double(i) / kRate);

@@ -8,13 +8,13 @@
 namespace lorgnette {
 namespace {
 
-using testing::AngleDeg;
-using testing::TestCamera;
-using testing::TestPose;
+using test::AngleDeg;
+using test::TestCamera;
+using test::TestPose;
 
 std::vector<PointSighting> Sightings(const Eigen::Isometry3d& pose) {
   std::vector<PointSighting> sightings;
-  for (const Eigen::Vector3d& p : testing::SyntheticCanonical().mesh.positions) {
+  for (const Eigen::Vector3d& p : test::SyntheticCanonical().mesh.positions) {
     sightings.push_back({p, TestCamera().Project(pose * p), 1});
   }
   return sightings;

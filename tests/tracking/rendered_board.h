@@ -10,7 +10,7 @@
 #include "base/image.h"
 #include "tracking/chessboard.h"
 
-namespace lorgnette::testing {
+namespace lorgnette::test {
 
 // A wide webcam's: barrel distortion of 11 px at the corners of 640 x 480, a middle that is off.
 inline CalibratedCamera WideCamera() {
@@ -104,4 +104,4 @@ inline std::vector<Eigen::Isometry3d> BoardPoses(const Chessboard& board) {
           BoardPose(board, -15, 30, 60, 0, 360),     BoardPose(board, 15, -30, -60, 20, 380)};
 }
 
-}  // namespace lorgnette::testing
+}  // namespace lorgnette::test

@@ -13,7 +13,7 @@
 
 #include "tests/tracking/synthetic_face.h"
 
-namespace lorgnette::testing {
+namespace lorgnette::test {
 namespace {
 
 constexpr int kFine = 2;               // samples a pixel along each side
@@ -214,4 +214,4 @@ std::optional<Eigen::Vector3d> RenderedHead::Hit(const Camera& camera,
   return Blend(mesh_.positions, mesh_.triangles[std::size_t(seen.triangle[0])], seen.weights[0]);
 }
 
-}  // namespace lorgnette::testing
+}  // namespace lorgnette::test

@@ -12,7 +12,7 @@
 #include "base/image.h"
 #include "base/mesh.h"
 
-namespace lorgnette::testing {
+namespace lorgnette::test {
 
 class RenderedHead {
  public:
@@ -45,4 +45,4 @@ class RenderedHead {
   std::vector<Source> sources_;
 };
 
-}  // namespace lorgnette::testing
+}  // namespace lorgnette::test

@@ -11,7 +11,7 @@
 #include "base/units.h"
 #include "tracking/canonical_mesh.h"
 
-namespace lorgnette::testing {
+namespace lorgnette::test {
 
 inline CanonicalMesh SyntheticCanonical() {
   CanonicalMesh c;
@@ -64,4 +64,4 @@ inline double AngleDeg(const Eigen::Matrix3d& a, const Eigen::Matrix3d& b) {
   return DegreesFromRadians(Eigen::AngleAxisd(Eigen::Matrix3d(a.transpose() * b)).angle());
 }
 
-}  // namespace lorgnette::testing
+}  // namespace lorgnette::test

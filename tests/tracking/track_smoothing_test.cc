@@ -10,8 +10,8 @@
 namespace lorgnette {
 namespace {
 
-using testing::AngleDeg;
-using testing::TestPose;
+using test::AngleDeg;
+using test::TestPose;
 
 struct Clip {
   HeadTrack track;
@@ -19,7 +19,7 @@ struct Clip {
   std::vector<double> confidence;
 
   explicit Clip(int count) : cut_before(std::size_t(count)), confidence(std::size_t(count), 1) {
-    track.camera = testing::TestCamera();
+    track.camera = test::TestCamera();
     for (int i = 0; i < count; ++i) {
       TrackedFrame& frame = track.frames.emplace_back();
       frame.time_s = i / 25.0;

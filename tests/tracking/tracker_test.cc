@@ -10,19 +10,13 @@
 #include <opencv2/imgcodecs.hpp>
 #include <opencv2/imgproc.hpp>
 
-#include "cmake/source_dir.h"
 #include "tests/tracking/synthetic_face.h"
+#include "tests/tracking/test_inputs.h"
 
 namespace lorgnette {
 namespace {
 
 using ::testing::HasSubstr;
-
-const std::string kModels = LORGNETTE_SOURCE_DIR "/cache/models";
-const std::string kTruth = LORGNETTE_SOURCE_DIR "/../shared/data/groundtruth/";
-
-#define NEED(path) \
-  if (!std::filesystem::exists(path)) GTEST_SKIP() << "needs " << (path)
 
 ImageRgb8 ReadPicture(const std::string& path) {
   const cv::Mat bgr = cv::imread(path, cv::IMREAD_COLOR);
@@ -33,7 +27,7 @@ ImageRgb8 ReadPicture(const std::string& path) {
 }
 
 Tracker NewTracker(double focal_px) {
-  auto tracker = Tracker::Create({kModels, 64, focal_px});
+  auto tracker = Tracker::Create({test::kModels, 64, focal_px});
   EXPECT_TRUE(tracker) << tracker.error().message;
   return std::move(*tracker);
 }
@@ -44,11 +38,11 @@ double YawDeg(const Eigen::Isometry3d& camera_from_head) {
 }
 
 TEST(Tracker, ReadsTheTurnBetweenTwoPicturesOfAKnownHead) {
-  NEED(kModels);
-  NEED(kTruth);
+  NEED(test::kModels);
+  NEED(test::kTruth);
   Tracker tracker = NewTracker(1680);
-  ASSERT_TRUE(tracker.Add(ReadPicture(kTruth + "pose_y0p0/input.png"), 0));
-  ASSERT_TRUE(tracker.Add(ReadPicture(kTruth + "pose_y20p0/input.png"), 1));
+  ASSERT_TRUE(tracker.Add(ReadPicture(test::kTruth + "/pose_y0p0/input.png"), 0));
+  ASSERT_TRUE(tracker.Add(ReadPicture(test::kTruth + "/pose_y20p0/input.png"), 1));
   const auto track = tracker.Finish();
   ASSERT_TRUE(track) << track.error().message;
   ASSERT_EQ(track->frames.size(), 2u);
@@ -67,9 +61,9 @@ TEST(Tracker, ReadsTheTurnBetweenTwoPicturesOfAKnownHead) {
 }
 
 TEST(Tracker, CountsFramesWithoutAFace) {
-  NEED(kModels);
-  NEED(kTruth);
-  const ImageRgb8 face = ReadPicture(kTruth + "pose_y0p0/input.png");
+  NEED(test::kModels);
+  NEED(test::kTruth);
+  const ImageRgb8 face = ReadPicture(test::kTruth + "/pose_y0p0/input.png");
   const ImageRgb8 blank(face.width, face.height);
   Tracker tracker = NewTracker(0);
   for (int i = 0; i < 6; ++i) ASSERT_TRUE(tracker.Add(i == 2 || i == 3 ? blank : face, i / 25.0));
@@ -85,7 +79,7 @@ TEST(Tracker, CountsFramesWithoutAFace) {
 }
 
 TEST(Tracker, SaysThatNoFrameShowsAFace) {
-  NEED(kModels);
+  NEED(test::kModels);
   Tracker tracker = NewTracker(0);
   const ImageRgb8 blank(320, 240);
   for (int i = 0; i < 3; ++i) ASSERT_TRUE(tracker.Add(blank, i / 25.0));
@@ -95,7 +89,7 @@ TEST(Tracker, SaysThatNoFrameShowsAFace) {
 }
 
 TEST(Tracker, RefusesFramesOfAnotherSize) {
-  NEED(kModels);
+  NEED(test::kModels);
   Tracker tracker = NewTracker(0);
   ASSERT_TRUE(tracker.Add(ImageRgb8(320, 240), 0));
   const Status other = tracker.Add(ImageRgb8(240, 320), 0.04);
@@ -105,10 +99,10 @@ TEST(Tracker, RefusesFramesOfAnotherSize) {
 }
 
 TEST(Tracker, RefusesAScaleOutOfRange) {
-  const auto tracker = Tracker::Create({kModels, 6.4, 0});
+  const auto tracker = Tracker::Create({test::kModels, 6.4, 0});
   ASSERT_FALSE(tracker);
   EXPECT_THAT(tracker.error().message, HasSubstr("pd: got 6.4 mm, want 40..90"));
-  EXPECT_FALSE(Tracker::Create({kModels, 64, -1}));
+  EXPECT_FALSE(Tracker::Create({test::kModels, 64, -1}));
 }
 
 TEST(Tracker, NamesMissingNetworks) {

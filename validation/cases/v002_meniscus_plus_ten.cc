@@ -5,7 +5,7 @@
 namespace lorgnette::validation {
 namespace {
 
-void Run(CaseRun& run) {
+void RunV002(CaseRun& run) {
   const ParaxialSystem lens = ParaxialSystem::ThickLens(Diopters(15), Diopters(-6), 6.5, 1.523);
   run.Rounded("back vertex power", "D", 10.03, 2, lens.BackVertexPower().value());
 }
@@ -15,6 +15,6 @@ void Run(CaseRun& run) {
 extern const Case kV002;
 const Case kV002 = {"V002", "paraxial",
                     "Back vertex power of a +15.00/-6.00 meniscus, n 1.523, 6.5 mm",
-                    "opticaled.com, back vertex power", Run};
+                    "opticaled.com, back vertex power", RunV002};
 
 }  // namespace lorgnette::validation

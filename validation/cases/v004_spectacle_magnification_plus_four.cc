@@ -5,7 +5,7 @@
 namespace lorgnette::validation {
 namespace {
 
-void Run(CaseRun& run) {
+void RunV004(CaseRun& run) {
   const double shape = ShapeFactor(Diopters(8), 4, 1.498);
   const double power = PowerFactor(Diopters(4), 15);
   run.Rounded("shape factor", "1", 1.022, 3, shape);
@@ -18,6 +18,6 @@ void Run(CaseRun& run) {
 extern const Case kV004;
 const Case kV004 = {"V004", "magnification",
                     "Shape, power factor and spectacle magnification, +4.00 D",
-                    "brainscape deck on spectacle magnification", Run};
+                    "brainscape deck on spectacle magnification", RunV004};
 
 }  // namespace lorgnette::validation

@@ -5,7 +5,7 @@
 namespace lorgnette::validation {
 namespace {
 
-void Run(CaseRun& run) {
+void RunV005(CaseRun& run) {
   const double shape = ShapeFactor(Diopters(4), 2, 1.498);
   const double power = PowerFactor(Diopters(-3), 15);
   run.Rounded("shape factor", "1", 1.005, 3, shape);
@@ -18,6 +18,6 @@ void Run(CaseRun& run) {
 extern const Case kV005;
 const Case kV005 = {"V005", "magnification",
                     "Shape, power factor and spectacle magnification, -3.00 D",
-                    "brainscape deck on spectacle magnification", Run};
+                    "brainscape deck on spectacle magnification", RunV005};
 
 }  // namespace lorgnette::validation

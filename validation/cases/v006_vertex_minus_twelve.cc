@@ -5,7 +5,7 @@
 namespace lorgnette::validation {
 namespace {
 
-void Run(CaseRun& run) {
+void RunV006(CaseRun& run) {
   run.Rounded("compensated power", "D", -12.61, 2, MovedTowardEye(Diopters(-12), -4).value());
 }
 
@@ -13,6 +13,6 @@ void Run(CaseRun& run) {
 
 extern const Case kV006;
 const Case kV006 = {"V006", "paraxial", "-12.00 D moved from 10 to 14 mm",
-                    "brainscape deck on spectacle magnification", Run};
+                    "brainscape deck on spectacle magnification", RunV006};
 
 }  // namespace lorgnette::validation

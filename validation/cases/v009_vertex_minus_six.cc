@@ -5,7 +5,7 @@
 namespace lorgnette::validation {
 namespace {
 
-void Run(CaseRun& run) {
+void RunV009(CaseRun& run) {
   run.Rounded("power at the cornea", "D", -5.59, 2, MovedTowardEye(Diopters(-6), 12).value(), 1);
 }
 
@@ -13,6 +13,6 @@ void Run(CaseRun& run) {
 
 extern const Case kV009;
 const Case kV009 = {"V009", "paraxial", "-6.00 D at the cornea, from 12 mm",
-                    "clevercalc, contact lens example (cut off, not rounded)", Run};
+                    "clevercalc, contact lens example (cut off, not rounded)", RunV009};
 
 }  // namespace lorgnette::validation

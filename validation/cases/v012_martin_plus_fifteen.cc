@@ -5,7 +5,7 @@
 namespace lorgnette::validation {
 namespace {
 
-void Run(CaseRun& run) {
+void RunV012(CaseRun& run) {
   const SphereCylinder tilted =
       MartinTilted(Diopters(15), RadiansFromDegrees(10), 1.5, AxisDegrees(180));
   run.Rounded("sphere", "D", 15.15, 2, tilted.sphere.value());
@@ -17,6 +17,6 @@ void Run(CaseRun& run) {
 
 extern const Case kV012;
 const Case kV012 = {"V012", "wear", "Martin's rule for +15.00 D tilted by 10 deg, 2n = 3",
-                    "Durham Technical Community College, lens tilt", Run};
+                    "Durham Technical Community College, lens tilt", RunV012};
 
 }  // namespace lorgnette::validation

@@ -6,7 +6,7 @@
 namespace lorgnette::validation {
 namespace {
 
-void Run(CaseRun& run) {
+void RunV015(CaseRun& run) {
   const auto prism = [](double sphere, double cylinder, double axis, double x_mm, double y_mm) {
     const Eigen::Matrix2d f =
         LensFrameMatrix(PowerVectorOf({Diopters(sphere), Diopters(cylinder), AxisDegrees(axis)}));
@@ -19,6 +19,6 @@ void Run(CaseRun& run) {
 
 extern const Case kV015;
 const Case kV015 = {"V015", "prism", "Prentice: +8.50 D, 2 mm below the optical centre",
-                    "nfos.org, answers 13a", Run};
+                    "nfos.org, answers 13a", RunV015};
 
 }  // namespace lorgnette::validation

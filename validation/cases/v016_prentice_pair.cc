@@ -6,7 +6,7 @@
 namespace lorgnette::validation {
 namespace {
 
-void Run(CaseRun& run) {
+void RunV016(CaseRun& run) {
   const auto prism = [](double sphere, double cylinder, double axis, double x_mm, double y_mm) {
     const Eigen::Matrix2d f =
         LensFrameMatrix(PowerVectorOf({Diopters(sphere), Diopters(cylinder), AxisDegrees(axis)}));
@@ -20,6 +20,6 @@ void Run(CaseRun& run) {
 
 extern const Case kV016;
 const Case kV016 = {"V016", "prism", "Prentice: -3.25 D at 5 mm and +7.75 D at 4 mm",
-                    "nfos.org, answers 13a", Run};
+                    "nfos.org, answers 13a", RunV016};
 
 }  // namespace lorgnette::validation

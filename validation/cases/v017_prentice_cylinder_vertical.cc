@@ -6,7 +6,7 @@
 namespace lorgnette::validation {
 namespace {
 
-void Run(CaseRun& run) {
+void RunV017(CaseRun& run) {
   const auto prism = [](double sphere, double cylinder, double axis, double x_mm, double y_mm) {
     const Eigen::Matrix2d f =
         LensFrameMatrix(PowerVectorOf({Diopters(sphere), Diopters(cylinder), AxisDegrees(axis)}));
@@ -20,6 +20,6 @@ void Run(CaseRun& run) {
 
 extern const Case kV017;
 const Case kV017 = {"V017", "prism", "Prentice: +5.00 -1.50 x 90, 8 mm below the optical centre",
-                    "nfos.org, answers 13a", Run};
+                    "nfos.org, answers 13a", RunV017};
 
 }  // namespace lorgnette::validation

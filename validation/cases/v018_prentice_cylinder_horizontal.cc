@@ -8,7 +8,7 @@
 namespace lorgnette::validation {
 namespace {
 
-void Run(CaseRun& run) {
+void RunV018(CaseRun& run) {
   const auto prism = [](double sphere, double cylinder, double axis, double x_mm, double y_mm) {
     const Eigen::Matrix2d f =
         LensFrameMatrix(PowerVectorOf({Diopters(sphere), Diopters(cylinder), AxisDegrees(axis)}));
@@ -22,6 +22,6 @@ void Run(CaseRun& run) {
 
 extern const Case kV018;
 const Case kV018 = {"V018", "prism", "Prentice: +5.00 -1.50 x 90, 5 mm to the side",
-                    "nfos.org, answers 13a", Run};
+                    "nfos.org, answers 13a", RunV018};
 
 }  // namespace lorgnette::validation

@@ -5,7 +5,7 @@
 namespace lorgnette::validation {
 namespace {
 
-void Run(CaseRun& run) {
+void RunV019(CaseRun& run) {
   const PowerVector a = PowerVectorOf({Diopters(0), Diopters(2), AxisDegrees(120)});
   const PowerVector b = PowerVectorOf({Diopters(0), Diopters(-2.25), AxisDegrees(30)});
   const SphereCylinder sum = MinusCylinderForm({a.mean + b.mean, a.j0 + b.j0, a.j45 + b.j45});
@@ -18,6 +18,6 @@ void Run(CaseRun& run) {
 
 extern const Case kV019;
 const Case kV019 = {"V019", "paraxial", "+2.00 x 120 with -2.25 x 30 as one sphero-cylinder",
-                    "studentdoctor forum 117 answer key", Run};
+                    "studentdoctor forum 117 answer key", RunV019};
 
 }  // namespace lorgnette::validation

@@ -5,7 +5,7 @@
 namespace lorgnette::validation {
 namespace {
 
-void Run(CaseRun& run) {
+void RunV020(CaseRun& run) {
   const PowerVector rx = PowerVectorOf({Diopters(3), Diopters(-1), AxisDegrees(180)});
   // The base curve is the toric surface's weaker cylinder; the other surface is spherical.
   const SphereCylinder order = PlusCylinderForm(rx);
@@ -20,6 +20,6 @@ void Run(CaseRun& run) {
 extern const Case kV020;
 const Case kV020 = {"V020", "paraxial",
                     "Thin toric transposition of +3.00 -1.00 x 180 on a +6 base",
-                    "mrcophth, mock paper 10", Run};
+                    "mrcophth, mock paper 10", RunV020};
 
 }  // namespace lorgnette::validation

@@ -5,7 +5,7 @@
 namespace lorgnette::validation {
 namespace {
 
-void Run(CaseRun& run) {
+void RunV021(CaseRun& run) {
   const PowerVector rx = PowerVectorOf({Diopters(-2), Diopters(1.5), AxisDegrees(90)});
   // The base curve is the toric surface's weaker cylinder; the other surface is spherical.
   const SphereCylinder order = MinusCylinderForm(rx);
@@ -19,6 +19,6 @@ void Run(CaseRun& run) {
 
 extern const Case kV021;
 const Case kV021 = {"V021", "paraxial", "Thin toric transposition of -2.00 +1.50 x 90 on a -6 base",
-                    "mrcophth, mock paper 10", Run};
+                    "mrcophth, mock paper 10", RunV021};
 
 }  // namespace lorgnette::validation

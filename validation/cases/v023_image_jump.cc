@@ -5,7 +5,7 @@
 namespace lorgnette::validation {
 namespace {
 
-void Run(CaseRun& run) {
+void RunV023(CaseRun& run) {
   const auto jump = [](SegmentShape shape, double diameter) {
     SegmentOrder segment;
     segment.shape = shape;
@@ -22,6 +22,6 @@ void Run(CaseRun& run) {
 extern const Case kV023;
 const Case kV023 = {"V023", "multifocal",
                     "Image jump of a 2.00 D addition: round 22 and 24 mm, flat-top 28",
-                    "Durham Technical Community College; Bhootra", Run};
+                    "Durham Technical Community College; Bhootra", RunV023};
 
 }  // namespace lorgnette::validation

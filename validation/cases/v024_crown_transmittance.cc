@@ -5,7 +5,7 @@
 namespace lorgnette::validation {
 namespace {
 
-void Run(CaseRun& run) {
+void RunV024(CaseRun& run) {
   const double r = FresnelReflectance(1, 1 / 1.523);
   run.Rounded("both surfaces once", "%", 91.6, 1, 100 * (1 - r) * (1 - r));
   run.Rounded("all internal bounces", "%", 91.76, 2, 100 * (1 - r) / (1 + r));
@@ -18,6 +18,6 @@ void Run(CaseRun& run) {
 extern const Case kV024;
 const Case kV024 = {"V024", "coating",
                     "Transmittance of an uncoated crown lens, single pass and all bounces",
-                    "Ellefsen, paperzz 6786699", Run};
+                    "Ellefsen, paperzz 6786699", RunV024};
 
 }  // namespace lorgnette::validation

@@ -7,7 +7,7 @@
 namespace lorgnette::validation {
 namespace {
 
-void Run(CaseRun& run) {
+void RunV025(CaseRun& run) {
   // Design at d, power at F and C by the same surfaces.
   LensOrder order;
   order.rx.sphere = Diopters(6);
@@ -29,6 +29,6 @@ void Run(CaseRun& run) {
 extern const Case kV025;
 const Case kV025 = {"V025", "coating",
                     "Longitudinal spread of a +6.00 D lens between the F and C lines, V = 30",
-                    "2020mag, chromatic aberration (low authority)", Run};
+                    "2020mag, chromatic aberration (low authority)", RunV025};
 
 }  // namespace lorgnette::validation

@@ -7,7 +7,7 @@
 namespace lorgnette::validation {
 namespace {
 
-void Run(CaseRun& run) {
+void RunV026(CaseRun& run) {
   const auto axis_error = [](double cylinder) {
     // Residual of a cylinder turned by t: difference of two power vectors; its cylinder is 2|C| sin
     // t.
@@ -32,6 +32,6 @@ void Run(CaseRun& run) {
 
 extern const Case kV026;
 const Case kV026 = {"V026", "design", "Axis error that leaves 0.12 D of cylinder",
-                    "OLA white paper on Z80.1-2005 (printed as about)", Run};
+                    "OLA white paper on Z80.1-2005 (printed as about)", RunV026};
 
 }  // namespace lorgnette::validation

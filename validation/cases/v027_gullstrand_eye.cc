@@ -5,7 +5,7 @@
 namespace lorgnette::validation {
 namespace {
 
-void Run(CaseRun& run) {
+void RunV027(CaseRun& run) {
   // Radii (mm), vertex positions (mm) and indices: cornea, lens cortex, lens core, and back again.
   const double radius[] = {7.7, 6.8, 10, 7.911, -5.76, -6};
   const double position[] = {0, .5, 3.6, 4.146, 6.565, 7.2};
@@ -34,6 +34,6 @@ void Run(CaseRun& run) {
 extern const Case kV027;
 const Case kV027 = {
     "V027", "paraxial", "Power, entrance pupil and pupil magnification of the Gullstrand eye no. 1",
-    "Gullstrand 1909 as tabulated in textbooks (figures from memory, recomputed)", Run};
+    "Gullstrand 1909 as tabulated in textbooks (figures from memory, recomputed)", RunV027};
 
 }  // namespace lorgnette::validation

@@ -5,7 +5,7 @@
 namespace lorgnette::validation {
 namespace {
 
-void Run(CaseRun& run) {
+void RunV028(CaseRun& run) {
   const ParaxialSystem eye = ParaxialSystem::Refraction(Diopters(60));
   run.Rounded("front focal length", "mm", -16.67, 2, -1000 / eye.EquivalentPower().value());
   run.Rounded("back focal length", "mm", 22.22, 2,
@@ -16,6 +16,6 @@ void Run(CaseRun& run) {
 
 extern const Case kV028;
 const Case kV028 = {"V028", "paraxial", "Focal lengths of the 60 D reduced eye, n 4/3",
-                    "brainscape deck on the schematic eye", Run};
+                    "brainscape deck on the schematic eye", RunV028};
 
 }  // namespace lorgnette::validation

@@ -5,7 +5,7 @@
 namespace lorgnette::validation {
 namespace {
 
-void Run(CaseRun& run) {
+void RunV029(CaseRun& run) {
   const double f1 = 10 / (1 + 0.004 / 1.523 * 10);  // F1 / (1 - tau F1) = 10
   const GazeVergence gaze = GazeAt(SpherePair(f1, -6, 4, 1.523), 35, 27);
   run.Within("oblique astigmatism", "D", 0, gaze.tangential_D - gaze.sagittal_D, 0.05,
@@ -18,6 +18,6 @@ void Run(CaseRun& run) {
 
 extern const Case kV029;
 const Case kV029 = {"V029", "gaze", "+4.00 with a -6.00 back: point-focal at 35 deg",
-                    "perret-optic.ch (Jalie, best form); n, t and s are not stated", Run};
+                    "perret-optic.ch (Jalie, best form); n, t and s are not stated", RunV029};
 
 }  // namespace lorgnette::validation

@@ -5,7 +5,7 @@
 namespace lorgnette::validation {
 namespace {
 
-void Run(CaseRun& run) {
+void RunV033(CaseRun& run) {
   const double tolerance = MeridianTolerance(LensKind::kSingleVision, Diopters(-3));
   run.Rounded("weakest", "D", -2.87, 2, -3 + tolerance);
   run.Rounded("strongest", "D", -3.13, 2, -3 - tolerance);
@@ -15,6 +15,6 @@ void Run(CaseRun& run) {
 
 extern const Case kV033;
 const Case kV033 = {"V033", "design", "Range of a -3.00 D lens by ANSI Z80.1",
-                    "opticianstudy, Z80.1 tolerances", Run};
+                    "opticianstudy, Z80.1 tolerances", RunV033};
 
 }  // namespace lorgnette::validation

@@ -5,7 +5,7 @@
 namespace lorgnette::validation {
 namespace {
 
-void Run(CaseRun& run) {
+void RunV034(CaseRun& run) {
   const double index = 1.691;
   const ParaxialSystem lens =
       ParaxialSystem::ThickLens(Diopters(1000 * (index - 1) / 63.73364157),
@@ -20,6 +20,6 @@ void Run(CaseRun& run) {
 extern const Case kV034;
 const Case kV034 = {"V034", "programs", "Focal length of a biconvex singlet, n 1.691",
                     "Zemax and Optiland, optiland issue 710; the index is printed with five digits",
-                    Run};
+                    RunV034};
 
 }  // namespace lorgnette::validation

@@ -5,7 +5,7 @@
 namespace lorgnette::validation {
 namespace {
 
-void Run(CaseRun& run) {
+void RunV041(CaseRun& run) {
   const ParaxialSystem lens =
       ParaxialSystem::ThickLens(Diopters(2), Diopters(-8.00375704445836), 1.5, 1.6);
   run.Exact("back vertex power", "D", -6, lens.BackVertexPower().value(), 12);
@@ -19,6 +19,6 @@ void Run(CaseRun& run) {
 extern const Case kV041;
 const Case kV041 = {
     "V041", "programs", "C1: -6.00 D, n 1.6, F1 +2, 1.5 mm: vertex and equivalent power",
-    "derived with 30 digits; confirmed by Optiland, rayoptics, prysm, goptical", Run};
+    "derived with 30 digits; confirmed by Optiland, rayoptics, prysm, goptical", RunV041};
 
 }  // namespace lorgnette::validation

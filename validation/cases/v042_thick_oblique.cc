@@ -8,7 +8,7 @@
 namespace lorgnette::validation {
 namespace {
 
-void Run(CaseRun& run) {
+void RunV042(CaseRun& run) {
   // Long's matrices of +6 +3 x 30 and -9 -4 x 75, axes as drawn (math angle from +x).
   const auto power = [](double sphere, double cylinder, double axis_deg) {
     const double a = RadiansFromDegrees(axis_deg), s = std::sin(a), c = std::cos(a);
@@ -36,6 +36,6 @@ void Run(CaseRun& run) {
 
 extern const Case kV042;
 const Case kV042 = {"V042", "paraxial", "C2: obliquely crossed thick cylinders, n 1.6, 5 mm",
-                    "reference section 14, recomputed with 40 digits", Run};
+                    "reference section 14, recomputed with 40 digits", RunV042};
 
 }  // namespace lorgnette::validation

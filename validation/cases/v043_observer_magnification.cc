@@ -6,7 +6,7 @@
 namespace lorgnette::validation {
 namespace {
 
-void Run(CaseRun& run) {
+void RunV043(CaseRun& run) {
   // Design by the exact back vertex power, then the observer's view.
   const auto view = [](double power, double index, double thickness, double f1, double depth,
                        double camera) {
@@ -34,6 +34,6 @@ void Run(CaseRun& run) {
 extern const Case kV043;
 const Case kV043 = {"V043", "magnification",
                     "C3: what an observer sees of the iris behind -6, +6 and -12 D",
-                    "reference section 14, recomputed with 40 digits", Run};
+                    "reference section 14, recomputed with 40 digits", RunV043};
 
 }  // namespace lorgnette::validation

@@ -8,7 +8,7 @@
 namespace lorgnette::validation {
 namespace {
 
-void Run(CaseRun& run) {
+void RunV044(CaseRun& run) {
   // The source measures the axis as a mathematical angle, here the lens frame's: TABO 180 - A.
   LensOrder order;
   order.rx = {Diopters(-4), Diopters(-3), AxisDegrees(150), {}, {}, {}};
@@ -41,6 +41,6 @@ void Run(CaseRun& run) {
 
 extern const Case kV044;
 const Case kV044 = {"V044", "programs", "C4: a toric lens at four gazes, in Listing-rotated axes",
-                    "derived with 30 digits; confirmed by Optiland to 8 digits", Run};
+                    "derived with 30 digits; confirmed by Optiland to 8 digits", RunV044};
 
 }  // namespace lorgnette::validation

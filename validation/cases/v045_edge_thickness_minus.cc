@@ -7,7 +7,7 @@
 namespace lorgnette::validation {
 namespace {
 
-void Run(CaseRun& run) {
+void RunV045(CaseRun& run) {
   const double diameter[] = {50, 60, 70}, edge[] = {4.747977, 6.260804, 8.123445};
   for (int i = 0; i < 3; ++i) {
     const auto lens = RoundDesign(-6, 1.6, 2, diameter[i], 1.5);
@@ -25,6 +25,6 @@ void Run(CaseRun& run) {
 
 extern const Case kV045;
 const Case kV045 = {"V045", "design", "C5: edge thickness and mass of minus lenses",
-                    "derived with 30 digits", Run};
+                    "derived with 30 digits", RunV045};
 
 }  // namespace lorgnette::validation

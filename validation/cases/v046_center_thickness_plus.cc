@@ -5,7 +5,7 @@
 namespace lorgnette::validation {
 namespace {
 
-void Run(CaseRun& run) {
+void RunV046(CaseRun& run) {
   const auto thickness = [&](double power, double index, double f1, double diameter) {
     const auto lens = RoundDesign(power, index, f1, diameter);
     return lens ? lens->lens.center_thickness_mm : 0;
@@ -19,6 +19,6 @@ void Run(CaseRun& run) {
 
 extern const Case kV046;
 const Case kV046 = {"V046", "design", "C6: centre thickness of plus lenses with a 1 mm edge",
-                    "derived with 30 digits", Run};
+                    "derived with 30 digits", RunV046};
 
 }  // namespace lorgnette::validation

@@ -7,7 +7,7 @@
 namespace lorgnette::validation {
 namespace {
 
-void Run(CaseRun& run) {
+void RunV047(CaseRun& run) {
   const Eigen::Matrix2d f =
       LensFrameMatrix(PowerVectorOf({Diopters(-2.5), Diopters(5), AxisDegrees(135)}));
   run.Exact("Fxx", "D", 0, f(0, 0), 12);
@@ -23,6 +23,6 @@ void Run(CaseRun& run) {
 extern const Case kV047;
 const Case kV047 = {"V047", "prism",
                     "C7: prism 12 mm below the centre of -2.50 +5.00 x 135 lies purely across",
-                    "derived; Prentice through the power matrix, checked by rays", Run};
+                    "derived; Prentice through the power matrix, checked by rays", RunV047};
 
 }  // namespace lorgnette::validation

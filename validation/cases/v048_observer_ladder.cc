@@ -7,7 +7,7 @@
 namespace lorgnette::validation {
 namespace {
 
-void Run(CaseRun& run) {
+void RunV048(CaseRun& run) {
   const double f2 = -6 - 2 / (1 - 0.0015 / 1.6 * 2);
   Lens lens;
   lens.front = Surface(SphereSurface{0.002 / 0.6});
@@ -29,6 +29,6 @@ void Run(CaseRun& run) {
 extern const Case kV048;
 const Case kV048 = {"V048", "magnification",
                     "C8: thin, thick and exact magnification by height, -6 D",
-                    "derived; exact rays to 1e-19 (printed with five decimals)", Run};
+                    "derived; exact rays to 1e-19 (printed with five decimals)", RunV048};
 
 }  // namespace lorgnette::validation

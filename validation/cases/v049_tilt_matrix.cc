@@ -6,7 +6,7 @@
 namespace lorgnette::validation {
 namespace {
 
-void Run(CaseRun& run) {
+void RunV049(CaseRun& run) {
   // The source's axis is TABO in axes (viewer's right, up).
   const Eigen::Matrix2d f =
       LongMatrix(PowerVectorOf({Diopters(-5), Diopters(-3), AxisDegrees(25)}));
@@ -19,8 +19,8 @@ void Run(CaseRun& run) {
 }  // namespace
 
 extern const Case kV049;
-const Case kV049 = {"V049", "wear",
-                    "C9: -5.00 -3.00 x 25 tilted by 18 deg about the horizontal, n 1.6",
-                    "derived; thin lens, chief ray through the vertex, checked by skew rays", Run};
+const Case kV049 = {
+    "V049", "wear", "C9: -5.00 -3.00 x 25 tilted by 18 deg about the horizontal, n 1.6",
+    "derived; thin lens, chief ray through the vertex, checked by skew rays", RunV049};
 
 }  // namespace lorgnette::validation

@@ -7,7 +7,7 @@
 namespace lorgnette::validation {
 namespace {
 
-void Run(CaseRun& run) {
+void RunV051(CaseRun& run) {
   const Lens lens = SpherePair(2, -8.00375704445836, 1.5, 1.6);
   const GazeVergence eye30 = GazeAt(lens, 30, 27);
   run.Exact("S' at 30 deg", "D", -5.957632772, eye30.sagittal_D, 9);
@@ -27,6 +27,6 @@ extern const Case kV051;
 const Case kV051 = {
     "V051", "programs",
     "C1: sagittal and tangential vergence of the benchmark lens at 30 and 25.3 deg of gaze",
-    "derived with 30 digits; confirmed by Optiland, rayoptics, prysm, goptical", Run};
+    "derived with 30 digits; confirmed by Optiland, rayoptics, prysm, goptical", RunV051};
 
 }  // namespace lorgnette::validation

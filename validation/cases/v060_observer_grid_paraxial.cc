@@ -19,7 +19,7 @@ Real ClosedForm(const GridPoint& p) {
 }
 
 // The same by two long double rays a hair apart from the axis: the slope at height 0.
-Real ByRay(const GridPoint& p) {
+Real ObserverByRay(const GridPoint& p) {
   constexpr Real kAngle = 1e-7L;
   const oracle::Vec direction = oracle::Vec(kAngle, 0, 1).normalized();
   const oracle::Trace ray =
@@ -30,7 +30,7 @@ Real ByRay(const GridPoint& p) {
   return kAngle * (Real(p.view.camera_mm) + plane) / height;
 }
 
-void Run(CaseRun& run) {
+void RunV060(CaseRun& run) {
   Worst library, rays;
   ForMagnificationGrid([&](const GridPoint& p) {
     const Real truth = ClosedForm(p);
@@ -39,7 +39,7 @@ void Run(CaseRun& run) {
                                                    p.thickness_mm, p.index),
                          p.thickness_mm, p.view);
     library.Add(double(view.magnification / truth - 1), [&] { return p.Where(); });
-    rays.Add(double(ByRay(p) / truth - 1), [&] { return p.Where(); });
+    rays.Add(double(ObserverByRay(p) / truth - 1), [&] { return p.Where(); });
   });
   library.Report(run, "thick lens to first order against the closed form", "1", 1e-13,
                  "roundings of doubles, tenfold where the lens images the feature far away");
@@ -52,6 +52,6 @@ void Run(CaseRun& run) {
 extern const Case kV060;
 const Case kV060 = {"V060", "magnification",
                     "the observer's magnification over a grid of lenses, to first order",
-                    "derived: optics reference section 5; rays in long double", Run};
+                    "derived: optics reference section 5; rays in long double", RunV060};
 
 }  // namespace lorgnette::validation

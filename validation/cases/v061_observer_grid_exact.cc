@@ -8,9 +8,7 @@
 namespace lorgnette::validation {
 namespace {
 
-using Real = long double;
-
-void Run(CaseRun& run) {
+void RunV061(CaseRun& run) {
   // The library finds the camera ray that reaches a feature; a long double trace of that very ray
   // has to meet the feature. What it misses by is the error of the height.
   Worst miss, axis;
@@ -28,9 +26,9 @@ void Run(CaseRun& run) {
           oracle::Vec(ray->camera_tangent.x(), ray->camera_tangent.y(), 1).normalized();
       const oracle::Trace trace =
           oracle::TraceLens(p.lens, oracle::Vec(0, 0, -p.view.camera_mm), direction, p.index);
-      const Real plane = Real(p.thickness_mm) + p.view.depth_mm;
-      const Real hit = trace.second.point.x() +
-                       (plane - trace.second.point.z()) / trace.exit.z() * trace.exit.x();
+      const oracle::Real plane = oracle::Real(p.thickness_mm) + p.view.depth_mm;
+      const oracle::Real hit = trace.second.point.x() +
+                               (plane - trace.second.point.z()) / trace.exit.z() * trace.exit.x();
       miss.Add(double(hit - height) / double(p.view.camera_mm + plane),
                [&] { return fmt::format("{}, height {} mm", p.Where(), height); });
       if (height < 0.01) {
@@ -53,6 +51,6 @@ void Run(CaseRun& run) {
 extern const Case kV061;
 const Case kV061 = {"V061", "magnification",
                     "the observer's magnification by exact rays, heights to 12 mm, over the grid",
-                    "long double rays, written apart from the library", Run};
+                    "long double rays, written apart from the library", RunV061};
 
 }  // namespace lorgnette::validation

@@ -9,7 +9,7 @@ namespace {
 using Real = long double;
 
 // Angle at the entrance pupil over the object's angle, by a long double ray from the pupil outward.
-Real ByRay(const GridPoint& p) {
+Real WearerByRay(const GridPoint& p) {
   constexpr Real kAngle = 1e-7L;
   const Real pupil = Real(p.thickness_mm) + p.view.depth_mm;
   const oracle::Vec out = oracle::Vec(kAngle, 0, -1).normalized();
@@ -17,7 +17,7 @@ Real ByRay(const GridPoint& p) {
   return kAngle / (ray.exit.x() / -ray.exit.z());
 }
 
-void Run(CaseRun& run) {
+void RunV062(CaseRun& run) {
   Worst wearer, thin, reciprocity;
   ForMagnificationGrid([&](const GridPoint& p) {
     if (p.view.camera_mm > 300) return;  // no camera here
@@ -25,7 +25,7 @@ void Run(CaseRun& run) {
         Diopters(p.front_D), Diopters(p.back_D()), p.thickness_mm, p.index);
     const double d = p.view.depth_mm;
     const double library = SpectacleMagnification(system, d);
-    wearer.Add(double(library / ByRay(p) - 1), [&] { return p.Where(); });
+    wearer.Add(double(library / WearerByRay(p) - 1), [&] { return p.Where(); });
     // Shape times power factor, as the textbooks have it.
     const double product = ShapeFactor(Diopters(p.front_D), p.thickness_mm, p.index) *
                            PowerFactor(system.BackVertexPower(), d);
@@ -46,6 +46,6 @@ void Run(CaseRun& run) {
 extern const Case kV062;
 const Case kV062 = {"V062", "magnification",
                     "the wearer's magnification over the grid, and reciprocity with the observer",
-                    "derived: optics reference section 5; rays in long double", Run};
+                    "derived: optics reference section 5; rays in long double", RunV062};
 
 }  // namespace lorgnette::validation

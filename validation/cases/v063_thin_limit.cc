@@ -5,7 +5,7 @@
 namespace lorgnette::validation {
 namespace {
 
-void Run(CaseRun& run) {
+void RunV063(CaseRun& run) {
   // The thick lens goes over into the thin one as its thickness vanishes, linearly.
   Worst limit, slope;
   ForMagnificationGrid([&](const GridPoint& p) {
@@ -28,6 +28,6 @@ void Run(CaseRun& run) {
 
 extern const Case kV063;
 const Case kV063 = {"V063", "magnification", "the thick lens becomes the thin one, linearly",
-                    "derived: both formulas of optics reference section 5", Run};
+                    "derived: both formulas of optics reference section 5", RunV063};
 
 }  // namespace lorgnette::validation

@@ -28,7 +28,7 @@ Matrix ByRays(const Lens& lens, const ObserverGeometry& view) {
   return (Real(view.camera_mm) + plane) * heights.inverse();
 }
 
-void Run(CaseRun& run) {
+void RunV064(CaseRun& run) {
   Worst entries, transposed;
   for (const double sphere : {-12.0, -6.0, -1.0, 2.0, 6.0, 10.0}) {
     for (const double cylinder : {-0.5, -2.0, -5.0}) {
@@ -72,6 +72,6 @@ void Run(CaseRun& run) {
 
 extern const Case kV064;
 const Case kV064 = {"V064", "magnification", "sphero-cylinders: the matrix of magnification",
-                    "derived: optics reference section 5; rays in long double", Run};
+                    "derived: optics reference section 5; rays in long double", RunV064};
 
 }  // namespace lorgnette::validation

@@ -4,7 +4,7 @@
 namespace lorgnette::validation {
 namespace {
 
-void Run(CaseRun& run) {
+void RunV070(CaseRun& run) {
   LensOrder order;
   order.rx.sphere = Diopters(-6);
   order.medium.index_d = 1.6;
@@ -16,6 +16,6 @@ void Run(CaseRun& run) {
 extern const Case kV070;
 const Case kV070 = {"V070", "magnification",
                     "dots behind a -6 D lens, found in the compositor's picture",
-                    "the program's exact rays (V061) against its own picture", Run};
+                    "the program's exact rays (V061) against its own picture", RunV070};
 
 }  // namespace lorgnette::validation

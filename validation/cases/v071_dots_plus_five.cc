@@ -4,7 +4,7 @@
 namespace lorgnette::validation {
 namespace {
 
-void Run(CaseRun& run) {
+void RunV071(CaseRun& run) {
   LensOrder order;
   order.rx.sphere = Diopters(5);
   order.medium.index_d = 1.5;
@@ -16,6 +16,6 @@ void Run(CaseRun& run) {
 extern const Case kV071;
 const Case kV071 = {"V071", "magnification",
                     "dots behind a +5 D lens, found in the compositor's picture",
-                    "the program's exact rays (V061) against its own picture", Run};
+                    "the program's exact rays (V061) against its own picture", RunV071};
 
 }  // namespace lorgnette::validation

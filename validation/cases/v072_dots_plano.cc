@@ -4,7 +4,7 @@
 namespace lorgnette::validation {
 namespace {
 
-void Run(CaseRun& run) {
+void RunV072(CaseRun& run) {
   LensOrder order;
   order.medium.index_d = 1.5;
   CheckDotGrid(run, order);
@@ -15,6 +15,6 @@ void Run(CaseRun& run) {
 extern const Case kV072;
 const Case kV072 = {"V072", "magnification",
                     "dots behind a plano lens, found in the compositor's picture",
-                    "the program's exact rays (V061) against its own picture", Run};
+                    "the program's exact rays (V061) against its own picture", RunV072};
 
 }  // namespace lorgnette::validation

@@ -4,7 +4,7 @@
 namespace lorgnette::validation {
 namespace {
 
-void Run(CaseRun& run) {
+void RunV073(CaseRun& run) {
   LensOrder order;
   order.rx.sphere = Diopters(-4);
   order.rx.cylinder = Diopters(-2.5);
@@ -18,6 +18,6 @@ void Run(CaseRun& run) {
 extern const Case kV073;
 const Case kV073 = {"V073", "magnification",
                     "dots behind -4.00 -2.50 x 30, found in the compositor's picture",
-                    "the program's exact rays (V061) against its own picture", Run};
+                    "the program's exact rays (V061) against its own picture", RunV073};
 
 }  // namespace lorgnette::validation

@@ -4,7 +4,7 @@
 namespace lorgnette::validation {
 namespace {
 
-void Run(CaseRun& run) {
+void RunV074(CaseRun& run) {
   LensOrder order;
   order.rx.sphere = Diopters(1);
   order.rx.add = Diopters(2);
@@ -18,6 +18,6 @@ void Run(CaseRun& run) {
 extern const Case kV074;
 const Case kV074 = {"V074", "magnification",
                     "dots behind a progressive, +1.00 add 2.00, found in the compositor's picture",
-                    "the program's exact rays (V061) against its own picture", Run};
+                    "the program's exact rays (V061) against its own picture", RunV074};
 
 }  // namespace lorgnette::validation

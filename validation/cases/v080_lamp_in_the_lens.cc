@@ -60,7 +60,7 @@ std::optional<Mirrored> Mirror(const Lens& lens, const Ray& ray, bool at_back) {
   return Mirrored{*leaves, (1 - r1) * r2 * (1 - r3)};
 }
 
-void Run(CaseRun& run) {
+void RunV080(CaseRun& run) {
   LensOrder order;
   order.rx.sphere = Diopters(-6);
   order.medium.index_d = 1.6;
@@ -134,6 +134,6 @@ void Run(CaseRun& run) {
 extern const Case kV080;
 const Case kV080 = {"V080", "image",
                     "a lamp mirrored by the front and by the back surface of a -6 D lens",
-                    "exact rays and Fresnel's formulas against the compositor's picture", Run};
+                    "exact rays and Fresnel's formulas against the compositor's picture", RunV080};
 
 }  // namespace lorgnette::validation

@@ -10,7 +10,7 @@
 namespace lorgnette::validation {
 namespace {
 
-void Run(CaseRun& run) {
+void RunV081(CaseRun& run) {
   constexpr int kSize = 200;
   for (const double power : {-6.0, 5.0}) {
     LensOrder order;
@@ -49,6 +49,6 @@ void Run(CaseRun& run) {
 
 extern const Case kV081;
 const Case kV081 = {"V081", "image", "a white furnace shows no lens: energy is conserved",
-                    "R + T = 1 at every surface", Run};
+                    "R + T = 1 at every surface", RunV081};
 
 }  // namespace lorgnette::validation

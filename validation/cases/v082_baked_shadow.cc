@@ -41,9 +41,9 @@ FramePart Bar() {
   return part;
 }
 
-void Run(CaseRun& run) {
+void RunV082(CaseRun& run) {
   constexpr int kSize = 100;
-  constexpr double kFocal_px = 500;
+  constexpr double kShadowFocal_px = 500;
   LensOrder order;
   order.medium.index_d = 1.6;
   auto eyewear = StraightEyewear(order);
@@ -58,7 +58,7 @@ void Run(CaseRun& run) {
     }
   }
   const Environment environment(std::move(map));
-  const StraightView view = ViewOnRightAxis(600, kSize, kFocal_px);
+  const StraightView view = ViewOnRightAxis(600, kSize, kShadowFocal_px);
   ImageRgbF grey(kSize, kSize);
   for (float& v : grey.data) v = 0.5f;
   const auto render = [&](ShadowMode mode) {
@@ -78,7 +78,7 @@ void Run(CaseRun& run) {
     for (int x = 0; x < kSize; ++x) {
       // Rows below the bar, above the lens: skin alone.
       const double truth = double(paper.at(x, y)[1]) / 0.5, found = double(baked.at(x, y)[1]) / 0.5;
-      const double height_mm = (0.5 * kSize - y - 0.5) * 600 / kFocal_px;
+      const double height_mm = (0.5 * kSize - y - 0.5) * 600 / kShadowFocal_px;
       if (height_mm < 18.6 || height_mm > 21.5 || std::abs(x - kSize / 2) > 25) continue;
       if (truth > 0.995) continue;
       ++shaded;
@@ -97,6 +97,6 @@ void Run(CaseRun& run) {
 
 extern const Case kV082;
 const Case kV082 = {"V082", "image", "the baked shadow against 1280 rays at every pixel",
-                    "Algorithm 1 of Zhang et al. 2017, as the oracle", Run};
+                    "Algorithm 1 of Zhang et al. 2017, as the oracle", RunV082};
 
 }  // namespace lorgnette::validation

@@ -4,7 +4,7 @@
 namespace lorgnette::validation {
 namespace {
 
-void Run(CaseRun& run) { CheckGroundTruth(run, "m6_y0p0"); }
+void RunV085(CaseRun& run) { CheckGroundTruth(run, "m6_y0p0"); }
 
 }  // namespace
 
@@ -13,7 +13,7 @@ const Case kV085 = {"V085",
                     "image",
                     "a path-traced wearer: m6_y0p0",
                     "Blender Cycles and exact rays; renders judged by their noise",
-                    Run,
+                    RunV085,
                     true};
 
 }  // namespace lorgnette::validation

@@ -4,7 +4,7 @@
 namespace lorgnette::validation {
 namespace {
 
-void Run(CaseRun& run) { CheckGroundTruth(run, "m6_y20p0"); }
+void RunV086(CaseRun& run) { CheckGroundTruth(run, "m6_y20p0"); }
 
 }  // namespace
 
@@ -13,7 +13,7 @@ const Case kV086 = {"V086",
                     "image",
                     "a path-traced wearer: m6_y20p0",
                     "Blender Cycles and exact rays; renders judged by their noise",
-                    Run,
+                    RunV086,
                     true};
 
 }  // namespace lorgnette::validation

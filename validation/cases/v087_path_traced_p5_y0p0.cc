@@ -4,7 +4,7 @@
 namespace lorgnette::validation {
 namespace {
 
-void Run(CaseRun& run) { CheckGroundTruth(run, "p5_y0p0"); }
+void RunV087(CaseRun& run) { CheckGroundTruth(run, "p5_y0p0"); }
 
 }  // namespace
 
@@ -13,7 +13,7 @@ const Case kV087 = {"V087",
                     "image",
                     "a path-traced wearer: p5_y0p0",
                     "Blender Cycles and exact rays; renders judged by their noise",
-                    Run,
+                    RunV087,
                     true};
 
 }  // namespace lorgnette::validation

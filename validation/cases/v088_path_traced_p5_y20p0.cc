@@ -4,7 +4,7 @@
 namespace lorgnette::validation {
 namespace {
 
-void Run(CaseRun& run) { CheckGroundTruth(run, "p5_y20p0"); }
+void RunV088(CaseRun& run) { CheckGroundTruth(run, "p5_y20p0"); }
 
 }  // namespace
 
@@ -13,7 +13,7 @@ const Case kV088 = {"V088",
                     "image",
                     "a path-traced wearer: p5_y20p0",
                     "Blender Cycles and exact rays; renders judged by their noise",
-                    Run,
+                    RunV088,
                     true};
 
 }  // namespace lorgnette::validation

@@ -4,7 +4,7 @@
 namespace lorgnette::validation {
 namespace {
 
-void Run(CaseRun& run) { CheckGroundTruth(run, "plano_y0p0"); }
+void RunV089(CaseRun& run) { CheckGroundTruth(run, "plano_y0p0"); }
 
 }  // namespace
 
@@ -13,7 +13,7 @@ const Case kV089 = {"V089",
                     "image",
                     "a path-traced wearer: plano_y0p0",
                     "Blender Cycles and exact rays; renders judged by their noise",
-                    Run,
+                    RunV089,
                     true};
 
 }  // namespace lorgnette::validation

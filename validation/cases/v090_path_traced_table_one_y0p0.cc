@@ -4,7 +4,7 @@
 namespace lorgnette::validation {
 namespace {
 
-void Run(CaseRun& run) { CheckGroundTruth(run, "tableI_y0p0"); }
+void RunV090(CaseRun& run) { CheckGroundTruth(run, "tableI_y0p0"); }
 
 }  // namespace
 
@@ -13,7 +13,7 @@ const Case kV090 = {"V090",
                     "image",
                     "a path-traced wearer: tableI_y0p0",
                     "Blender Cycles and exact rays; renders judged by their noise",
-                    Run,
+                    RunV090,
                     true};
 
 }  // namespace lorgnette::validation

@@ -4,7 +4,7 @@
 namespace lorgnette::validation {
 namespace {
 
-void Run(CaseRun& run) { CheckGroundTruth(run, "tableI_y20p0"); }
+void RunV091(CaseRun& run) { CheckGroundTruth(run, "tableI_y20p0"); }
 
 }  // namespace
 
@@ -13,7 +13,7 @@ const Case kV091 = {"V091",
                     "image",
                     "a path-traced wearer: tableI_y20p0",
                     "Blender Cycles and exact rays; renders judged by their noise",
-                    Run,
+                    RunV091,
                     true};
 
 }  // namespace lorgnette::validation

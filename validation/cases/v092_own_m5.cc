@@ -4,7 +4,7 @@
 namespace lorgnette::validation {
 namespace {
 
-void Run(CaseRun& run) { CheckGroundTruth(run, "own_m5", OwnGroundTruthFolder()); }
+void RunV092(CaseRun& run) { CheckGroundTruth(run, "own_m5", OwnGroundTruthFolder()); }
 
 }  // namespace
 
@@ -13,7 +13,7 @@ const Case kV092 = {"V092",
                     "image",
                     "a wearer path-traced by scripts/make-groundtruth: -5 D, seen from the front",
                     "Blender Cycles, and exact rays of scripts/groundtruth_rays.py",
-                    Run,
+                    RunV092,
                     true};
 
 }  // namespace lorgnette::validation

@@ -4,7 +4,7 @@
 namespace lorgnette::validation {
 namespace {
 
-void Run(CaseRun& run) { CheckGroundTruth(run, "own_p4", OwnGroundTruthFolder()); }
+void RunV093(CaseRun& run) { CheckGroundTruth(run, "own_p4", OwnGroundTruthFolder()); }
 
 }  // namespace
 
@@ -14,7 +14,7 @@ const Case kV093 = {
     "image",
     "a wearer path-traced by scripts/make-groundtruth: +4 D, head turned and lowered",
     "Blender Cycles, and exact rays of scripts/groundtruth_rays.py",
-    Run,
+    RunV093,
     true};
 
 }  // namespace lorgnette::validation

@@ -9,7 +9,7 @@
 namespace lorgnette::validation {
 namespace {
 
-void Run(CaseRun& run) {
+void RunV095(CaseRun& run) {
   if (!HasJobs()) return run.Skip("no lab jobs on this machine ($LORGNETTE_JOBS)");
   for (const char* name : {"R1000_1.oma", "R360_1.oma", "R360_3.oma", "STHKFMT.oma"}) {
     const auto job = ReadJob(name);
@@ -36,6 +36,6 @@ void Run(CaseRun& run) {
 
 extern const Case kV095;
 const Case kV095 = {"V095", "lab", "traces of real jobs against the box and girth that they state",
-                    "eeng/lens_protocol, lab job files (OMA DCS 3.10)", Run};
+                    "eeng/lens_protocol, lab job files (OMA DCS 3.10)", RunV095};
 
 }  // namespace lorgnette::validation

@@ -55,7 +55,7 @@ std::optional<EdgeDifference> Compare(const OmaFile& job, const OmaTrace& trace,
   return result;
 }
 
-void Run(CaseRun& run) {
+void RunV096(CaseRun& run) {
   if (!HasJobs()) return run.Skip("no lab jobs on this machine ($LORGNETTE_JOBS)");
   const auto job = ReadJob("STHKFMT.oma");
   const auto traces =
@@ -83,6 +83,7 @@ void Run(CaseRun& run) {
 
 extern const Case kV096;
 const Case kV096 = {"V096", "lab", "edge thickness of a real job's pair, from its curves",
-                    "eeng/lens_protocol, STHKFMT.oma: a lab's own thicknesses at 72 angles", Run};
+                    "eeng/lens_protocol, STHKFMT.oma: a lab's own thicknesses at 72 angles",
+                    RunV096};
 
 }  // namespace lorgnette::validation

@@ -6,7 +6,7 @@
 namespace lorgnette::validation {
 namespace {
 
-void Run(CaseRun& run) {
+void RunV100(CaseRun& run) {
   // Curvatures from 1e-15 to 1/15 mm and none: the centre form of the intersection loses 1e-2 mm at
   // the weak end, the vertex form nothing.
   Worst point;
@@ -31,6 +31,6 @@ void Run(CaseRun& run) {
 
 extern const Case kV100;
 const Case kV100 = {"V100", "hard", "plano, weak and strong spheres: where a ray meets them",
-                    "optics reference section 13, row 1; long double", Run};
+                    "optics reference section 13, row 1; long double", RunV100};
 
 }  // namespace lorgnette::validation

@@ -6,7 +6,7 @@
 namespace lorgnette::validation {
 namespace {
 
-void Run(CaseRun& run) {
+void RunV101(CaseRun& run) {
   // A point of the vertex' sheet, and a ray through it: that point has to come back, not the other
   // root, which lies nearer the vertex on steep hyperboloids and vanishes for k = -1 on the axis.
   Worst found, axial;
@@ -44,6 +44,6 @@ void Run(CaseRun& run) {
 
 extern const Case kV101;
 const Case kV101 = {"V101", "hard", "steep conics: the root on the sheet of the vertex",
-                    "optics reference section 13, row 2 (Optiland #329, #559, #787)", Run};
+                    "optics reference section 13, row 2 (Optiland #329, #559, #787)", RunV101};
 
 }  // namespace lorgnette::validation

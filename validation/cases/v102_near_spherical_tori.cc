@@ -6,7 +6,7 @@
 namespace lorgnette::validation {
 namespace {
 
-void Run(CaseRun& run) {
+void RunV102(CaseRun& run) {
   Sampler random(102);
   struct Radii {
     double generator, across;
@@ -36,6 +36,6 @@ void Run(CaseRun& run) {
 
 extern const Case kV102;
 const Case kV102 = {"V102", "hard", "tori that are almost spheres or cylinders",
-                    "optics reference section 13, row 4 (Optiland #151, #239)", Run};
+                    "optics reference section 13, row 4 (Optiland #151, #239)", RunV102};
 
 }  // namespace lorgnette::validation

@@ -9,7 +9,7 @@
 namespace lorgnette::validation {
 namespace {
 
-void Run(CaseRun& run) {
+void RunV103(CaseRun& run) {
   // Grazing rays, rays beside the sag, rays past the critical angle: each has a status and no
   // number that is none; total reflection happens where Snell's law says so, and only there.
   Sampler random(103);
@@ -50,6 +50,6 @@ void Run(CaseRun& run) {
 
 extern const Case kV103;
 const Case kV103 = {"V103", "hard", "grazing rays, lost rays, total reflection",
-                    "optics reference section 13, rows 3 and 11", Run};
+                    "optics reference section 13, rows 3 and 11", RunV103};
 
 }  // namespace lorgnette::validation

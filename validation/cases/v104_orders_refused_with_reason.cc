@@ -14,7 +14,7 @@ LensOrder Order(double sphere, double index, double base, double diameter) {
   return order;
 }
 
-void Run(CaseRun& run) {
+void RunV104(CaseRun& run) {
   const auto refuses = [&](const char* what, const LensOrder& order, const char* word) {
     const auto design = DesignLens(order);
     const bool named = !design && design.error().message.find(word) != std::string::npos;
@@ -43,6 +43,6 @@ void Run(CaseRun& run) {
 
 extern const Case kV104;
 const Case kV104 = {"V104", "hard", "orders that cannot be made are refused with their reason",
-                    "optics reference section 13, rows 7 to 10", Run};
+                    "optics reference section 13, rows 7 to 10", RunV104};
 
 }  // namespace lorgnette::validation

@@ -8,7 +8,7 @@
 namespace lorgnette::validation {
 namespace {
 
-void Run(CaseRun& run) {
+void RunV105(CaseRun& run) {
   // Section 13b, with the worst of a random sample.
   Worst power, reversed, symplectic, turned, transposed, scaled, thin;
   Sampler random(105);
@@ -102,6 +102,6 @@ void Run(CaseRun& run) {
 
 extern const Case kV105;
 const Case kV105 = {"V105", "hard", "properties of random designs, with the worst of each",
-                    "optics reference section 13b", Run};
+                    "optics reference section 13b", RunV105};
 
 }  // namespace lorgnette::validation

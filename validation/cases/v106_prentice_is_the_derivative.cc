@@ -7,7 +7,7 @@
 namespace lorgnette::validation {
 namespace {
 
-void Run(CaseRun& run) {
+void RunV106(CaseRun& run) {
   Worst slope, cubic;
   Sampler random(106);
   for (int i = 0; i < 400; ++i) {
@@ -40,6 +40,6 @@ void Run(CaseRun& run) {
 
 extern const Case kV106;
 const Case kV106 = {"V106", "hard", "Prentice's rule is the derivative of the traced prism",
-                    "optics reference section 13b", Run};
+                    "optics reference section 13b", RunV106};
 
 }  // namespace lorgnette::validation

@@ -10,7 +10,7 @@
 namespace lorgnette::validation {
 namespace {
 
-void Run(CaseRun& run) {
+void RunV107(CaseRun& run) {
   Worst energy, reciprocity, bare;
   Sampler random(107);
   for (int i = 0; i < 5000; ++i) {
@@ -46,6 +46,6 @@ void Run(CaseRun& run) {
 
 extern const Case kV107;
 const Case kV107 = {"V107", "hard", "coats neither make nor lose light at any angle",
-                    "optics reference section 13b", Run};
+                    "optics reference section 13b", RunV107};
 
 }  // namespace lorgnette::validation

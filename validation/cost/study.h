@@ -22,6 +22,8 @@ struct CostPoint {
   std::string note = {};       // "lost 12 of 12,931 rays"
   std::string preset = {};     // the name of the quality preset that this point is
   bool front = false;          // MarkFront
+
+  std::string Name() const { return parameter.empty() ? method : method + ", " + parameter; }
 };
 
 // One measure of error.

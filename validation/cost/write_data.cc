@@ -61,10 +61,6 @@ std::string CsvField(const std::string& text) {
   return out + "\"";
 }
 
-std::string Name(const CostPoint& point) {
-  return point.parameter.empty() ? point.method : point.method + ", " + point.parameter;
-}
-
 }  // namespace
 
 std::string CostJson(const CostReport& report) {
@@ -111,7 +107,7 @@ std::string CostText(const CostReport& report, const CostBudget* budget) {
     for (const ErrorUnit& unit : study.units) text += fmt::format(" {:>13}", unit.name);
     text += '\n';
     for (const CostPoint& point : study.points) {
-      text += fmt::format("{} {:<46} {:>10.4g} {:>8.2g}", point.front ? '*' : ' ', Name(point),
+      text += fmt::format("{} {:<46} {:>10.4g} {:>8.2g}", point.front ? '*' : ' ', point.Name(),
                           point.time, point.time_spread / 2);
       for (const double error : point.errors) text += fmt::format(" {:>13.3g}", error);
       if (!point.preset.empty()) text += "  --quality " + point.preset;
@@ -121,7 +117,7 @@ std::string CostText(const CostReport& report, const CostBudget* budget) {
     if (budget == nullptr) continue;
     const CostPoint* best = Recommend(study, *budget);
     if (best != nullptr) {
-      text += fmt::format("  recommended for this budget: {} ({:.3g} {}", Name(*best), best->time,
+      text += fmt::format("  recommended for this budget: {} ({:.3g} {}", best->Name(), best->time,
                           study.time_unit);
       if (study.ms_per_frame > 0) {
         text += fmt::format(", {:.3g} ms a frame", best->time * study.ms_per_frame);

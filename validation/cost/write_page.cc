@@ -15,10 +15,6 @@ namespace {
 constexpr double kLeft = 64, kTop = 18, kPlotWidth = 600, kPlotHeight = 380, kLegendRow = 17;
 constexpr int kColours = 10;
 
-std::string Name(const CostPoint& point) {
-  return point.parameter.empty() ? point.method : point.method + ", " + point.parameter;
-}
-
 // Three digits, and no exponent where there are more before the point.
 std::string Short(double value) {
   return value >= 1000 ? fmt::format("{:.0f}", value) : fmt::format("{:.3g}", value);
@@ -122,7 +118,7 @@ std::string CostPlotSvg(const CostStudy& study, std::size_t unit, bool standalon
     svg += fmt::format(
         "<g><title>{0}: {1:.3g} {2}, {3:.3g} {4}</title><circle cx=\"{5:.1f}\" cy=\"{6:.1f}\" "
         "r=\"{7}\" fill=\"{8}\" stroke=\"var(--s{9})\" stroke-width=\"2\"/></g>\n",
-        HtmlEscape(Name(p)), p.time, study.time_unit, p.errors[unit], study.units[unit].name, x, y,
+        HtmlEscape(p.Name()), p.time, study.time_unit, p.errors[unit], study.units[unit].name, x, y,
         p.front ? 5.5 : 4, p.front ? fmt::format("var(--s{})", colour) : "var(--paper)", colour);
     const std::string label = p.preset.empty() ? Label(p.parameter) : p.preset;
     svg += fmt::format("<text x=\"{:.1f}\" y=\"{:.1f}\" font-size=\"9\">{}</text>\n", x + 8, y - 4,
@@ -176,7 +172,7 @@ std::string CostHtml(const CostReport& report, const CostBudget* budget) {
       const CostPoint* best = Recommend(study, *budget);
       body += best != nullptr
                   ? fmt::format("<p>For this budget: <strong>{}</strong>.</p>\n",
-                                HtmlEscape(Name(*best)))
+                                HtmlEscape(best->Name()))
                   : std::string(Applies(study, *budget)
                                     ? "<p>Nothing here keeps this budget.</p>\n"
                                     : "<p>This budget says nothing about this study.</p>\n");
@@ -203,7 +199,7 @@ std::string CostHtml(const CostReport& report, const CostBudget* budget) {
       body += fmt::format(
           "<tr{}><td class=\"name\">{}</td><td class=\"number\">{}</td><td "
           "class=\"number\">{}</td>",
-          p.front ? " class=\"front\"" : "", HtmlEscape(Name(p)), Short(p.time),
+          p.front ? " class=\"front\"" : "", HtmlEscape(p.Name()), Short(p.time),
           Short(p.time_spread / 2));
       if (per_frame) {
         body += fmt::format("<td class=\"number\">{}</td>", Short(p.time * study.ms_per_frame));

@@ -1,0 +1,39 @@
+// SPDX-License-Identifier: Apache-2.0
+// Where the rays of a tile go: side x side a pixel, or one and more only where it pays.
+#pragma once
+
+#include <Eigen/Core>
+#include <cstdint>
+#include <vector>
+
+#include "render/tile_mask.h"
+#include "render/tile_renderer.h"
+
+namespace lorgnette {
+
+// Samples of the pixels that `wanted` names (all of them when it is empty), side x side a pixel, in
+// blocks of pixels that fill a packet of 16.
+void PlaceSamples(const PixelBox& area, int side, const std::vector<bool>& wanted,
+                  std::vector<CameraSample>& samples);
+
+// Adaptive: what the ray through a pixel's centre met, and how bright it was, encoded.
+struct Glance {
+  CameraSample::Kind kind = CameraSample::Kind::kBackground;
+  std::uint8_t code = 0;
+};
+
+// Pixels whose neighbourhood meets different things, and those of the frame with some contrast.
+std::vector<bool> PixelsToRefine(const PixelBox& area, int width, int height,
+                                 const std::vector<Glance>& glances);
+
+// Adaptive, where only the face's shadow falls: samples lie on every second column and row of the
+// tile and on its last ones.
+bool OnShadowGrid(int x, int y);
+
+// The pixels between those of the grid take the mean of their neighbours on it, where these met the
+// same thing and their factors differ by less than a code value or two; `wanted` receives the
+// others. `factor` and `kind` hold a tile's pixels.
+void FillShadowGrid(const PixelBox& area, std::vector<Eigen::Vector3f>& factor,
+                    const std::vector<CameraSample::Kind>& kind, std::vector<bool>& wanted);
+
+}  // namespace lorgnette
