@@ -3,11 +3,11 @@
 
 #include <fmt/format.h>
 
-#include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <cmath>
 #include <nlohmann/json.hpp>
 
+#include "base/linear_algebra.h"
 #include "optics/media.h"
 #include "optics/trace.h"
 #include "render/color.h"
@@ -217,8 +217,11 @@ class Surveyor {
       survey.rings =
           survey.rings.cwiseMax(r2.cwiseProduct(tint).cwiseProduct(EdgeLight().cwiseMax(seen)));
     }
-    survey.bounces = survey.bounces.cwiseMax(
-        r2.cwiseProduct(reflected(look.front, bare_front, cosine, false)).cwiseProduct(brightest_));
+    // A second reflection, at the front, sends the light back toward the head, where it finds what
+    // the picture shows; beside the edge it may find the light of the edge.
+    survey.bounces =
+        survey.bounces.cwiseMax(r2.cwiseProduct(reflected(look.front, bare_front, cosine, false))
+                                    .cwiseProduct(beside_edge ? EdgeLight() : input_.Brightest()));
     survey.coating = survey.coating.cwiseMax(
         (r1 - Eigen::Vector3f::Constant(bare_front))
             .cwiseAbs()
@@ -252,7 +255,7 @@ float LensLightShare(const HeadScene& head) {
     const Eigen::Matrix2d bend = (lens.medium.index_d - 1) * 1000 *
                                  (lens.front.VertexCurvature() - lens.back.VertexCurvature());
     const double power =
-        bend.eigenvalues().real().cwiseAbs().maxCoeff() * (bend.trace() < 0 ? -1 : 1);
+        SymmetricEigenvalues(bend).cwiseAbs().maxCoeff() * (bend.trace() < 0 ? -1 : 1);
     const double gathered = std::pow(std::max(0.1, 1 - kFarthestSkin_m * power), -2.0);
     const double index = lens.medium.index_d;
     const auto passed = [&](const SurfaceLook& s) {

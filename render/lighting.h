@@ -84,8 +84,8 @@ class BakedShadow {
   };
   struct Touched {
     std::uint32_t point;
-    std::uint32_t first_blocked, blocked_count;
-    Eigen::Vector3i vertices;  // of its triangle
+    std::uint32_t first_blocked, first_hidden, end_blocked;  // those that the face hides come last
+    Eigen::Vector3i vertices;                                // of its triangle
     float u, v;
     bool buried;
   };

@@ -143,8 +143,8 @@ Result<Scaler> MakeScaler(int width, int height, AVPixelFormat from, bool from_f
 
 }  // namespace
 
-Result<Scaler> ScalerToRgb(int width, int height, AVPixelFormat format, const ColourReading& c) {
-  return MakeScaler(width, height, format, c.full_range, AV_PIX_FMT_RGB24, true, c, true);
+Result<Scaler> ScalerToPlanes(int width, int height, AVPixelFormat format, const ColourReading& c) {
+  return MakeScaler(width, height, format, c.full_range, AV_PIX_FMT_GBRP, true, c, true);
 }
 
 Result<Scaler> ScalerFromRgb(int width, int height, AVPixelFormat format, const ColourReading& c) {

@@ -57,8 +57,10 @@ ColourReading ReadingOf(const AVFrame& frame);
 // SWS_CS_* of a tag; by size when it names none.
 int MatrixOf(AVColorSpace space, int width, int height);
 
-// Converters between `format` and RGB24 of one size, with accurate rounding.
-Result<Scaler> ScalerToRgb(int width, int height, AVPixelFormat format, const ColourReading& c);
+// Converters between YUV and RGB of one size, with accurate rounding: from `format` to planes
+// (GBRP, for which libswscale has vector code; to packed RGB it takes five times as long), and from
+// packed RGB24 to `format`.
+Result<Scaler> ScalerToPlanes(int width, int height, AVPixelFormat format, const ColourReading& c);
 Result<Scaler> ScalerFromRgb(int width, int height, AVPixelFormat format, const ColourReading& c);
 
 }  // namespace av

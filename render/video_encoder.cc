@@ -147,7 +147,13 @@ Status VideoEncoder::OpenFile() {
 }
 
 Status VideoEncoder::Write(const VideoFrame& frame) {
-  const ImageRgb8 turned = Oriented(frame.rgb, source_.orientation.Inverse());
+  // Copied only when the file is stored turned.
+  const auto stored = [&](const ImageRgb8& upright, ImageRgb8& copy) -> const ImageRgb8& {
+    if (source_.orientation.is_upright()) return upright;
+    return copy = Oriented(upright, source_.orientation.Inverse());
+  };
+  ImageRgb8 turned_copy, decoded_copy;
+  const ImageRgb8& turned = stored(frame.rgb, turned_copy);
   if (turned.width != source_.width || turned.height != source_.height) {
     return Failure(fmt::format("{}: got a frame of {}x{} pixels, want {}x{}", file_.final_path(),
                                turned.width, turned.height, source_.width, source_.height));
@@ -161,7 +167,7 @@ Status VideoEncoder::Write(const VideoFrame& frame) {
   }
   FillFromRgb(turned, from_rgb_.get(), *picture);
   if (frame.original != nullptr) {
-    const ImageRgb8 decoded = Oriented(frame.original->rgb, source_.orientation.Inverse());
+    const ImageRgb8& decoded = stored(frame.original->rgb, decoded_copy);
     RestoreUntouched(turned, decoded, *frame.original->frame, *picture);
   }
   picture->color_range = source_.range;

@@ -38,11 +38,16 @@ struct VideoFrame {
   std::shared_ptr<const DecodedPicture> original;
 };
 
+struct VideoReaderOptions {
+  // Frames come with VideoFrame::original; whoever writes no video does without.
+  bool keep_originals = true;
+};
+
 class VideoReader {
  public:
   // Videos by any name; "shot_%04d.png" is a sequence from its lowest number on, without gaps;
   // .png .jpg .jpeg .bmp .tif .tiff .webp are single images.
-  static Result<VideoReader> Open(const std::string& path);
+  static Result<VideoReader> Open(const std::string& path, const VideoReaderOptions& options = {});
   VideoReader(VideoReader&&) noexcept;
   VideoReader& operator=(VideoReader&&) noexcept;
   ~VideoReader();

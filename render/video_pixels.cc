@@ -5,34 +5,79 @@ extern "C" {
 #include <libavutil/pixdesc.h>
 }
 
+#include <algorithm>
 #include <cstring>
 #include <vector>
 
 namespace lorgnette {
 namespace {
 
+// Which pixels of a picture differ from another of its size: none of most rows.
+struct Touched {
+  Touched(const ImageRgb8& a, const ImageRgb8& b)
+      : width(a.width), row_of(std::size_t(a.height), -1) {
+    for (int y = 0; y < a.height; ++y) {
+      const std::uint8_t *p = a.at(0, y), *q = b.at(0, y);
+      if (std::memcmp(p, q, 3 * std::size_t(width)) == 0) continue;
+      row_of[std::size_t(y)] = int(pixels.size() / std::size_t(width));
+      for (int x = 0; x < width; ++x, p += 3, q += 3) {
+        pixels.push_back(p[0] != q[0] || p[1] != q[1] || p[2] != q[2]);
+      }
+    }
+  }
+  // Of row y; null where no pixel differs.
+  const std::uint8_t* Row(int y) const {
+    const int row = row_of[std::size_t(y)];
+    return row < 0 ? nullptr : pixels.data() + std::size_t(row) * std::size_t(width);
+  }
+
+  int width;
+  std::vector<int> row_of;
+  std::vector<std::uint8_t> pixels;
+};
+
 // One plane of samples, each covering a block of 2^log2_w x 2^log2_h pixels.
-void RestorePlane(const std::vector<std::uint8_t>& touched, int width, int height, int log2_w,
-                  int log2_h, int sample_bytes, const std::uint8_t* from, int from_stride,
-                  std::uint8_t* to, int to_stride) {
+void RestorePlane(const Touched& touched, int log2_w, int log2_h, int sample_bytes,
+                  const std::uint8_t* from, int from_stride, std::uint8_t* to, int to_stride) {
+  const int width = touched.width, height = int(touched.row_of.size());
   const int columns = AV_CEIL_RSHIFT(width, log2_w);
   const int rows = AV_CEIL_RSHIFT(height, log2_h);
   std::vector<std::uint8_t> row(static_cast<std::size_t>(columns));
-  for (int r = 0; r < rows; ++r) {
+  for (int r = 0; r < rows; ++r, from += from_stride, to += to_stride) {
     std::fill(row.begin(), row.end(), std::uint8_t{0});
+    bool any = false;
     for (int y = r << log2_h; y < std::min(height, (r + 1) << log2_h); ++y) {
-      const std::uint8_t* line = touched.data() + std::size_t(y) * width;
+      const std::uint8_t* line = touched.Row(y);
+      if (line == nullptr) continue;
+      any = true;
       for (int x = 0; x < width; ++x) row[x >> log2_w] |= line[x];
+    }
+    if (!any) {
+      std::memcpy(to, from, std::size_t(columns) * std::size_t(sample_bytes));
+      continue;
     }
     for (int c = 0; c < columns; ++c) {
       if (row[c] == 0) std::memcpy(to + c * sample_bytes, from + c * sample_bytes, sample_bytes);
     }
-    from += from_stride;
-    to += to_stride;
   }
 }
 
 }  // namespace
+
+ImageRgb8 RgbOfPlanes(const AVFrame& planes) {
+  ImageRgb8 rgb(planes.width, planes.height);
+  for (int y = 0; y < rgb.height; ++y) {
+    const auto row = [&](int plane) { return planes.data[plane] + y * planes.linesize[plane]; };
+    const std::uint8_t *green = row(0), *blue = row(1), *red = row(2);
+    std::uint8_t* out = rgb.at(0, y);
+    for (int x = 0; x < rgb.width; ++x, out += 3) {
+      out[0] = red[x];
+      out[1] = green[x];
+      out[2] = blue[x];
+    }
+  }
+  return rgb;
+}
 
 void FillFromRgb(const ImageRgb8& rgb, SwsContext* scaler, AVFrame& frame) {
   const std::uint8_t* pixels = rgb.data.data();
@@ -51,11 +96,7 @@ bool RestoreUntouched(const ImageRgb8& edited, const ImageRgb8& decoded, const A
       original.height != frame.height || decoded.data.size() != edited.data.size()) {
     return false;
   }
-  const int width = frame.width, height = frame.height;
-  std::vector<std::uint8_t> touched(std::size_t(width) * std::size_t(height));
-  for (std::size_t i = 0; i < touched.size(); ++i) {
-    touched[i] = std::memcmp(&edited.data[3 * i], &decoded.data[3 * i], 3) != 0;
-  }
+  const Touched touched(edited, decoded);
   bool plane_done[4] = {};
   for (int i = 0; i < description->nb_components; ++i) {
     const AVComponentDescriptor& component = description->comp[i];
@@ -63,7 +104,7 @@ bool RestoreUntouched(const ImageRgb8& edited, const ImageRgb8& decoded, const A
     if (plane_done[plane]) continue;  // NV12 keeps both chroma components in one
     plane_done[plane] = true;
     const bool chroma = i == 1 || i == 2;
-    RestorePlane(touched, width, height, chroma ? description->log2_chroma_w : 0,
+    RestorePlane(touched, chroma ? description->log2_chroma_w : 0,
                  chroma ? description->log2_chroma_h : 0, component.step, original.data[plane],
                  original.linesize[plane], frame.data[plane], frame.linesize[plane]);
   }

@@ -1,11 +1,14 @@
 // SPDX-License-Identifier: Apache-2.0
-// From an edited RGB picture back to the encoder's format. Private to render/.
+// Between decoded planes, packed RGB and the encoder's format. Private to render/.
 #pragma once
 
 #include "base/image.h"
 #include "render/video_av.h"
 
 namespace lorgnette {
+
+// Packs the planes of an AV_PIX_FMT_GBRP picture.
+ImageRgb8 RgbOfPlanes(const AVFrame& planes);
 
 // Writes `rgb` (stored orientation) into `frame`, whose buffers are allocated, through `scaler`.
 void FillFromRgb(const ImageRgb8& rgb, SwsContext* scaler, AVFrame& frame);

@@ -6,6 +6,7 @@
 #include "render/image_io.h"
 #include "render/video_io.h"
 #include "render/video_names.h"
+#include "render/video_pixels.h"
 #include "render/video_state.h"
 
 namespace lorgnette {
@@ -26,8 +27,9 @@ VideoReader::~VideoReader() = default;
 const VideoInfo& VideoReader::info() const { return state_->info; }
 const std::string& VideoReader::path() const { return state_->path; }
 
-Result<VideoReader> VideoReader::Open(const std::string& path) {
+Result<VideoReader> VideoReader::Open(const std::string& path, const VideoReaderOptions& options) {
   auto state = std::make_unique<State>();
+  state->options = options;
   state->path = path;
   VideoInfo& info = state->info;
 
@@ -138,9 +140,14 @@ Status VideoReader::State::SetScaler(const AVFrame& frame) {
   reading = av::ReadingOf(frame);
   bool full_range = false;
   const AVPixelFormat format = av::PlainFormat(frame.format, &full_range);
-  auto scaler = av::ScalerToRgb(frame.width, frame.height, format, reading);
+  auto scaler = av::ScalerToPlanes(frame.width, frame.height, format, reading);
   if (!scaler) return Failure(path + ": " + scaler.error().message);
-  to_rgb = *std::move(scaler);
+  to_planes = *std::move(scaler);
+  planes.reset(av_frame_alloc());
+  planes->width = frame.width;
+  planes->height = frame.height;
+  planes->format = AV_PIX_FMT_GBRP;
+  if (av_frame_get_buffer(planes.get(), 0) < 0) return Failure(path + ": no memory for a frame");
   scaler_format = frame.format;
   return {};
 }
@@ -170,20 +177,20 @@ Result<std::optional<VideoFrame>> VideoReader::State::NextFrame() {
                                stored.width, stored.height, Where()));
   }
   LG_RETURN_IF_ERROR(SetScaler(stored));
-  ImageRgb8 rgb(stored.width, stored.height);
-  std::uint8_t* pixels = rgb.data.data();
-  const int stride = 3 * rgb.width;
-  sws_scale(to_rgb.get(), stored.data, stored.linesize, 0, stored.height, &pixels, &stride);
-  picture->rgb = Oriented(std::move(rgb), orientation);
+  sws_scale(to_planes.get(), stored.data, stored.linesize, 0, stored.height, planes->data,
+            planes->linesize);
 
   VideoFrame frame;
-  frame.rgb = picture->rgb;
+  frame.rgb = Oriented(RgbOfPlanes(*planes), orientation);
   frame.pts = stored.best_effort_timestamp;
   if (frame.pts == AV_NOPTS_VALUE) {  // raw streams: by the frame rate
     frame.pts = av_rescale_q(frames_read, av_inv_q(frame_rate), time_base);
   }
   frame.time_s = static_cast<double>(frame.pts) * av_q2d(time_base);
-  frame.original = std::move(picture);
+  if (options.keep_originals) {
+    picture->rgb = frame.rgb;
+    frame.original = std::move(picture);
+  }
   last_pts = frame.pts;
   ++frames_read;
   return frame;

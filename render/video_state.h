@@ -12,6 +12,7 @@ namespace lorgnette {
 
 struct VideoReader::State {
   std::string path;
+  VideoReaderOptions options;
   VideoInfo info;
 
   // Image files in order; empty for a video.
@@ -27,7 +28,8 @@ struct VideoReader::State {
   AVRational time_base{1, 25};
   AVRational frame_rate{25, 1};
   av::Packet packet;
-  av::Scaler to_rgb;
+  av::Scaler to_planes;
+  av::Frame planes;  // GBRP of the picture at hand
   av::ColourReading reading;
   int scaler_format = AV_PIX_FMT_NONE;
   bool flushed = false;
