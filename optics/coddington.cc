@@ -15,7 +15,6 @@ using Eigen::Matrix3d;
 using Eigen::Vector3d;
 using Basis = Eigen::Matrix<double, 3, 2>;
 
-
 // What refracts at one surface: bend turned so that its normal goes along the light.
 struct Interface {
   SurfaceBend bend;

@@ -73,7 +73,8 @@ class Surveyor {
             (head.options.world_from_camera * camera_from_head.rotation()).cast<float>()) {
     // Any light that a ray could find: the brightest of the environment and of the picture.
     brightest_ = float(head.options.environment_scale) * head.brightest.greatest();
-    brightest_ = brightest_.cwiseMax(input.Brightest());
+    picture_brightest_ = input.Brightest();
+    brightest_ = brightest_.cwiseMax(picture_brightest_);
   }
 
   LensSurvey Survey(std::size_t lens) const {
@@ -221,7 +222,7 @@ class Surveyor {
     // the picture shows; beside the edge it may find the light of the edge.
     survey.bounces =
         survey.bounces.cwiseMax(r2.cwiseProduct(reflected(look.front, bare_front, cosine, false))
-                                    .cwiseProduct(beside_edge ? EdgeLight() : input_.Brightest()));
+                                    .cwiseProduct(beside_edge ? EdgeLight() : picture_brightest_));
     survey.coating = survey.coating.cwiseMax(
         (r1 - Eigen::Vector3f::Constant(bare_front))
             .cwiseAbs()
@@ -242,7 +243,7 @@ class Surveyor {
   Eigen::Isometry3d camera_from_head_;
   Eigen::Vector3d eye_;
   Eigen::Matrix3f world_from_head_;
-  Eigen::Vector3f brightest_{0, 0, 0};
+  Eigen::Vector3f brightest_{0, 0, 0}, picture_brightest_{0, 0, 0};
 };
 
 // The greatest relative change of the light that a lens passes on to skin behind it: what it keeps

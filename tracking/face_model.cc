@@ -22,7 +22,7 @@ constexpr double kLandmarkSigma = 0.03;
 // How far a personal face may leave the canonical one: across and up, and in depth (mm).
 const Eigen::Vector3d kPriorSigma_mm(20, 20, 2);
 constexpr double kFrontalWithinDeg =
-    10;                     // weight of a frame falls with the angle to its most frontal
+    10;                        // weight of a frame falls with the angle to its most frontal
 constexpr int kFitRounds = 3;  // of poses and points in turn
 constexpr std::size_t kMostFrames = 60;  // frames that shape the face
 

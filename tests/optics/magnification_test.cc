@@ -38,9 +38,11 @@ TEST(SpectacleMagnification, MatchesPublishedCases) {
   // +4 D, front +8, 4 mm, 15 mm, n 1.498: 1.022 x 1.064 = 1.087.
   EXPECT_NEAR(ShapeFactor(Diopters(8), 4, 1.498), 1.02183, 0.5e-5);
   EXPECT_NEAR(PowerFactor(Diopters(4), 15), 1.06383, 0.5e-5);
-  EXPECT_NEAR(SpectacleMagnification(MakeSphericalLens(4, 8, 4, 1.498).system, 15), 1.08705, 0.5e-5);
+  EXPECT_NEAR(SpectacleMagnification(MakeSphericalLens(4, 8, 4, 1.498).system, 15), 1.08705,
+              0.5e-5);
   // -3 D, front +4, 2 mm, 15 mm: 1.005, 0.957, 0.962.
-  EXPECT_NEAR(SpectacleMagnification(MakeSphericalLens(-3, 4, 2, 1.498).system, 15), 0.96208, 0.5e-5);
+  EXPECT_NEAR(SpectacleMagnification(MakeSphericalLens(-3, 4, 2, 1.498).system, 15), 0.96208,
+              0.5e-5);
 }
 
 TEST(SpectacleMagnification, IsShapeTimesPower) {
@@ -66,8 +68,8 @@ TEST(ObserverParaxial, MatchesGoldenC3) {
   for (const Case& c :
        {Case{-6, 2, 1.5, 1.6, 500, 0.922034867}, Case{6, 9, 5, 1.6, 500, 1.129596369},
         Case{-12, 1, 1.2, 1.74, 600, 0.851472673}}) {
-    const auto view =
-        ObserverParaxial(MakeSphericalLens(c.power, c.front, c.t, c.n).system, c.t, {c.camera, 15.05});
+    const auto view = ObserverParaxial(MakeSphericalLens(c.power, c.front, c.t, c.n).system, c.t,
+                                       {c.camera, 15.05});
     EXPECT_NEAR(view.magnification, c.magnification, kViewDecimals);
   }
   const auto minus = ObserverParaxial(MakeSphericalLens(-6, 2, 1.5, 1.6).system, 1.5, {500, 15.05});
