@@ -26,12 +26,13 @@ interface Frame {
   half: number; // height shown, mm
 }
 
-const W = 920;
 const H = 400;
+// As in style.css: a narrow drawing is a taller one.
+const narrow = matchMedia("(max-width: 480px)");
 
 export function raysSection(store: Store, wanted: () => boolean): HTMLElement {
   let mode: Mode = "wearer";
-  const drawing = s("svg", { viewBox: `0 0 ${W} ${H}`, role: "img", class: "rays-drawing" });
+  const drawing = s("svg", { role: "img", class: "rays-drawing" });
   const told = h("p", { class: "told", role: "status", "aria-live": "polite" });
   const slider = (
     key: string, min: number, max: number, step: number, value: number, show: (v: number) => string,
@@ -98,10 +99,13 @@ export function raysSection(store: Store, wanted: () => boolean): HTMLElement {
     const far = Math.min(1500, Math.max(80, Math.abs(focus ?? 1500) * 1.15));
     // The whole lens, and in the wearer's view heights and lengths to one scale.
     const half = Math.max(27, 1.06 * high, -1.06 * low);
+    const W = narrow.matches ? 560 : 920;
+    drawing.setAttribute("viewBox", `0 0 ${W} ${H}`);
     const long = (half * W) / H;
+    const before = narrow.matches ? 0.7 : 1; // the eye behind the lens has to be in sight
     const frame: Frame =
       mode === "wearer"
-        ? { z0: -long, z1: long, half }
+        ? { z0: -before * long, z1: (2 - before) * long, half }
         : mode === "far"
           ? { z0: -far, z1: (focus ?? -1) > 0 ? far : 0.35 * far, half }
           : { z0: -Math.min(order.camera, 120) - 6, z1: 44, half };
@@ -252,8 +256,10 @@ export function raysSection(store: Store, wanted: () => boolean): HTMLElement {
   }
 
   store.onLenses(draw, wanted);
-  view.onChange(() => {
+  const again = (): void => {
     if (wanted()) draw();
-  });
+  };
+  view.onChange(again);
+  narrow.addEventListener("change", again);
   return root;
 }
