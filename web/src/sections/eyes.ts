@@ -50,6 +50,7 @@ export function eyesSection(
     baseKey = "";
     draw();
   });
+  const prismHint = h("p", { class: "hint" }, t("eyes.prismHint"));
   const root = h("section", { class: "card eyes" },
     h("div", { class: "card-head" }, h("h2", {}, t("eyes.title")),
       h("div", { class: "checks" },
@@ -57,7 +58,7 @@ export function eyesSection(
         h("label", {}, noFrame, t("eyes.noFrame")),
         h("label", {}, mirrored, t("eyes.mirrored")),
         h("label", {}, rings, t("eyes.rings")))),
-    canvas, photos, readout, h("p", { class: "hint" }, t("eyes.hint")));
+    canvas, photos, readout, prismHint, h("p", { class: "hint" }, t("eyes.hint")));
 
   const cell = new Map<string, HTMLElement>();
   const line = (key: TextKey, name: string): HTMLElement =>
@@ -104,6 +105,7 @@ export function eyesSection(
       EYES.forEach((eye, i) => paintLens(eye, outlines[i]));
       if (!noFrame.checked) drawFrame(ctx, outlines, "#23262b");
     }
+    prismHint.hidden = EYES.every((eye) => order[eye].prismIn === 0 && order[eye].prismUp === 0);
     const iris = { right: 1, left: 1 };
     for (const eye of EYES) {
       const s = sheet[eye];

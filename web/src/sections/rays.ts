@@ -102,13 +102,14 @@ export function raysSection(store: Store, wanted: () => boolean): HTMLElement {
     const W = narrow.matches ? 560 : 920;
     drawing.setAttribute("viewBox", `0 0 ${W} ${H}`);
     const long = (half * W) / H;
+    const eyesEnd = cornea + 2 * EYE_RADIUS_MM + 2;
     const before = narrow.matches ? 0.7 : 1; // the eye behind the lens has to be in sight
     const frame: Frame =
       mode === "wearer"
         ? { z0: -before * long, z1: (2 - before) * long, half }
         : mode === "far"
-          ? { z0: -far, z1: (focus ?? -1) > 0 ? far : 0.35 * far, half }
-          : { z0: -Math.min(order.camera, 120) - 6, z1: 44, half };
+          ? { z0: -far, z1: (focus ?? -1) > 0 ? far : Math.max(0.35 * far, eyesEnd), half }
+          : { z0: -Math.min(order.camera, 120) - 6, z1: eyesEnd, half };
     const x = (z: number): number => ((z - frame.z0) / (frame.z1 - frame.z0)) * W;
     const y = (height: number): number => H / 2 - (height / frame.half) * (H / 2);
     const at = (height: number, z: number): string => `${x(z).toFixed(2)} ${y(height).toFixed(2)}`;
@@ -130,7 +131,7 @@ export function raysSection(store: Store, wanted: () => boolean): HTMLElement {
     };
     if (onAxis(-1)[0] !== 0) line([onAxis(frame.z0), onAxis(frame.z1)], "axis");
 
-    if (mode === "observer") drawObserver(slot, degrees, cornea, order, line, label);
+    if (mode === "observer") drawObserver(slot, degrees, cornea, order, frame.z1, line, label);
     else drawFan(slot, degrees, low, high, frame, line);
 
     const mark = (z: number | null | undefined, text: string): void => {
@@ -221,7 +222,7 @@ export function raysSection(store: Store, wanted: () => boolean): HTMLElement {
 
   // The ray from the camera to the iris' edge, and where the edge therefore seems to be.
   function drawObserver(
-    slot: number, degrees: number, cornea: number, order: Order,
+    slot: number, degrees: number, cornea: number, order: Order, end: number,
     line: (points: [number, number][], className: string) => void,
     label: (height: number, z: number, text: string, anchor?: string) => void,
   ): void {
@@ -246,7 +247,7 @@ export function raysSection(store: Store, wanted: () => boolean): HTMLElement {
       line([[apparent - 0.35 * Math.sign(target), iris], [apparent + 0.35 * Math.sign(target), iris]], "apparent");
       if (target > 0) {
         const ratio = apparent / target;
-        label(IRIS_RADIUS_MM + (ratio > 1 ? 2.2 : 1), iris + 2, t(ratio > 1 ? "rays.larger" : "rays.smaller"), "start");
+        label(EYE_RADIUS_MM + 2, end - 1, t(ratio > 1 ? "rays.larger" : "rays.smaller"), "end");
         setText(told, t("rays.toldObserver", {
           mm: fixed(apparent, 2), bare: fixed(target, 2), ratio: fixed(ratio, 4),
         }));
