@@ -185,7 +185,8 @@ export function mapsSection(store: Store, wanted: () => boolean): MapsSection {
       : kind === "progPower"
         ? (v: number) => rising((v - bottom) / Math.max(0.05, top - bottom))
         : (v: number) => rising(v / Math.max(top, 0.25));
-    const levels = top - bottom < 0.01 ? [] : roundLevels(bottom, top);
+    const levels = top - bottom < 0.01 ? []
+      : roundLevels(bottom, top).filter((level) => f.signed || level > 0);
     const clip = uniqueId("clip");
     const dx = f.halfX / (n - 1);
     const dy = f.halfY / (m - 1);
