@@ -19,8 +19,8 @@ const AT_ONCE = 4;
 const SEEN_EVERY = 5; // of them also as a camera sees them
 const MIN_CENTRE_MM = 1.5; // the program's own are those of the medium
 const MIN_EDGE_MM = 1;
-// Both compilers keep to IEEE double and contract nothing; what differs is the C library's last
-// digit in sin, cos and atan2, a few ulp, which the steepest of these lenses magnify about 100 times.
+// Both compilers keep to IEEE double and contract nothing; the C libraries differ in the last digit
+// of sin, cos and atan2, a few ulp, which the steepest of these lenses magnify about 100 times.
 const RELATIVE = 1e-12;
 // Below this a number is compared absolutely; one that is measured by the differences of rays, or
 // left over by a search, from 10 (D, degrees) on: those state an error of their own, above 1e-13.
