@@ -4,6 +4,7 @@
 #include <fmt/format.h>
 #include <httplib.h>
 
+#include <charconv>
 #include <filesystem>
 #include <fstream>
 #include <sstream>
@@ -44,6 +45,23 @@ Result<std::string> ReadWhole(const fs::path& path) {
 void Refuse(httplib::Response& response, int status) {
   response.status = status;
   response.set_content(fmt::format("{}\n", status), "text/plain");
+}
+
+// What a request is refused with before its method or path are looked at; 0 where nothing is wrong.
+int Refusal(const httplib::Request& request) {
+  std::size_t headers = 0;
+  for (const auto& [name, value] : request.headers) headers += name.size() + value.size();
+  if (headers > kMaxHeaders_bytes) return 431;
+  const auto [first, last] = request.headers.equal_range("Content-Length");
+  for (auto it = first; it != last; ++it) {
+    const std::string& length = it->second;
+    std::size_t body = 0;
+    const auto [end, error] = std::from_chars(length.data(), length.data() + length.size(), body);
+    if (error != std::errc() || end != length.data() + length.size()) return 400;
+    if (body > kMaxBody_bytes) return 413;
+  }
+  // Thousands of ranges in one line would be answered by as many copies.
+  return request.ranges.size() > 1 ? 416 : 0;
 }
 
 }  // namespace
@@ -116,8 +134,8 @@ Result<PageServer> PageServer::Start(PageFiles files, const std::string& host, i
                               {"Cross-Origin-Resource-Policy", "same-origin"},
                               {"Cache-Control", "no-cache"}});
   server.set_pre_routing_handler([](const httplib::Request& request, httplib::Response& response) {
-    if (request.ranges.size() > 1) {  // thousands in one line would be answered by as many copies
-      response.status = 416;
+    if (const int status = Refusal(request)) {
+      response.status = status;
       return httplib::Server::HandlerResponse::Handled;
     }
     if (request.method == "GET" || request.method == "HEAD") {

@@ -2,8 +2,9 @@
 // The optician's page over HTTP: the files of one folder, read once at the start, and nothing else.
 //
 // A request is answered from that table alone, so that no path of a request ever reaches the file
-// system. GET and HEAD only; a request with a body of more than kMaxBody_bytes, a request line or a
-// header beyond 8 KiB, and anything that is not HTTP are refused. Private to apps/.
+// system. GET and HEAD only; a request with a body of more than kMaxBody_bytes, or one of a length
+// that is no number, a request line or headers beyond kMaxHeaders_bytes, and anything that is not
+// HTTP are refused. Private to apps/.
 #pragma once
 
 #include <cstddef>
@@ -16,6 +17,7 @@
 namespace lorgnette {
 
 inline constexpr std::size_t kMaxBody_bytes = 1024;
+inline constexpr std::size_t kMaxHeaders_bytes = 8192;  // all of them; one alone, too
 inline constexpr std::size_t kMaxPageFile_bytes = std::size_t{16} << 20;
 
 struct PageFile {

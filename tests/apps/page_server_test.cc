@@ -124,6 +124,23 @@ TEST_F(PageServerTest, RefusesOversizedRequests) {
   EXPECT_THAT(Get(server.port(), "/" + std::string(9000, 'a')), Not(StartsWith("HTTP/1.1 200")));
   EXPECT_THAT(Ask(server.port(), "GET / HTTP/1.1\r\nX: " + std::string(9000, 'a') + "\r\n\r\n"),
               Not(StartsWith("HTTP/1.1 200")));
+  std::string headers;
+  for (int i = 0; i < 2000; ++i) headers += "X" + std::to_string(i) + ": 1\r\n";
+  EXPECT_THAT(Ask(server.port(), "GET / HTTP/1.1\r\nConnection: close\r\n" + headers + "\r\n"),
+              StartsWith("HTTP/1.1 431"));
+}
+
+TEST_F(PageServerTest, RefusesABodyOfAFalseOrLargeLength) {
+  const PageServer server = Started();
+  const auto ask = [&](const std::string& length) {
+    return Ask(server.port(), "GET / HTTP/1.1\r\nHost: x\r\nConnection: close\r\nContent-Length: " +
+                                  length + "\r\n\r\n");
+  };
+  for (const char* length : {"-5", "five", "0x5", "5 5", "99999999999999999999999"}) {
+    EXPECT_THAT(ask(length), StartsWith("HTTP/1.1 400")) << length;
+  }
+  EXPECT_THAT(ask(std::to_string(kMaxBody_bytes + 1)), StartsWith("HTTP/1.1 413"));
+  EXPECT_THAT(ask("0"), StartsWith("HTTP/1.1 200"));
 }
 
 TEST_F(PageServerTest, AnswersOneRangeAndRefusesSeveral) {

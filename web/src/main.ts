@@ -120,7 +120,7 @@ async function start(app: HTMLElement): Promise<void> {
     h("header", {},
       h("div", { class: "brand" }, h("img", { src: "./icon.svg", alt: "", width: 30, height: 30 }),
         h("div", {}, h("h1", {}, "Lorgnette"), h("p", {}, t("page.subtitle")))),
-      themeButton()),
+      themeButton(() => view.openTab(view.tab))),
     h("div", { class: "layout" },
       h("aside", { "aria-label": t("order.title") }, orderForm(store)),
       h("main", { id: "panels", tabindex: -1 }, tabBar(panels), stale,

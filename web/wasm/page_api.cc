@@ -4,7 +4,6 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <limits>
 #include <optional>
 #include <string>
 #include <vector>
@@ -25,11 +24,10 @@ using lorgnette::Lens;
 using lorgnette::LensTrace;
 using lorgnette::Ray;
 using lorgnette::RayStatus;
+using lorgnette::page::kNaN;
 using lorgnette::page::PageOrder;
 using lorgnette::page::Slot;
 using lorgnette::page::WornFrame;
-
-constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
 
 std::array<std::optional<Slot>, kPageSlots>& Slots() {
   static std::array<std::optional<Slot>, kPageSlots> slots;

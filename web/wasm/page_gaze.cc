@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // The maps of the page: what the turning eye meets, and a progressive surface by itself.
 #include <cmath>
-#include <limits>
 #include <vector>
 
 #include "optics/gaze.h"
@@ -18,9 +17,8 @@ using lorgnette::Gaze;
 using lorgnette::GazeVergence;
 using lorgnette::Lens;
 using lorgnette::RayStatus;
+using lorgnette::page::kNaN;
 using lorgnette::page::Slot;
-
-constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
 
 Eigen::Vector2d Tangents(const Eigen::Vector3d& direction) {
   return direction.head<2>() / direction.z();

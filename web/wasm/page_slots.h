@@ -3,6 +3,7 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <limits>
 #include <string>
 
 #include "optics/certify.h"
@@ -10,6 +11,9 @@
 #include "page_json.h"
 
 namespace lorgnette::page {
+
+// Stands in an array for a number that there is not.
+inline constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
 
 struct Slot {
   std::string order_json;  // as asked

@@ -12,9 +12,8 @@ export const HEIGHT = (WINDOW.top - WINDOW.bottom) * PX_PER_MM;
 
 type Context = CanvasRenderingContext2D;
 
-function toMm(ctx: Context): void {
-  ctx.setTransform(
-    PX_PER_MM, 0, 0, -PX_PER_MM, -WINDOW.left * PX_PER_MM, WINDOW.top * PX_PER_MM);
+function toMm(ctx: Context, perMm = PX_PER_MM): void {
+  ctx.setTransform(perMm, 0, 0, -perMm, -WINDOW.left * perMm, WINDOW.top * perMm);
 }
 
 function drawEye(ctx: Context, x: number, y: number, side: 1 | -1, iris: number): void {
@@ -201,8 +200,10 @@ export function drawPhoto(
 }
 
 // Rim, bridge and temples over the two outlines (mm, viewer's x).
-export function drawFrame(ctx: Context, outlines: [number, number][][], colour: string): void {
-  toMm(ctx);
+export function drawFrame(
+  ctx: Context, outlines: [number, number][][], colour: string, perMm = PX_PER_MM,
+): void {
+  toMm(ctx, perMm);
   ctx.lineJoin = "round";
   ctx.lineCap = "round";
   ctx.strokeStyle = colour;

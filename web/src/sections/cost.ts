@@ -9,9 +9,11 @@ import { t } from "../app/texts";
 import { view } from "../app/view";
 import { h, s, setText, uniqueId } from "../ui/dom";
 
-const W = 720;
 const H = 420;
-const PAD = { left: 74, right: 24, top: 18, bottom: 48 };
+// As in style.css, where a narrow plot has larger letters.
+const narrow = matchMedia("(max-width: 480px)");
+const WIDE = { W: 720, PAD: { left: 74, right: 24, top: 18, bottom: 48 }, below: 18 };
+const NARROW = { W: 500, PAD: { left: 112, right: 20, top: 18, bottom: 62 }, below: 24 };
 const ZERO_BELOW = 0.5; // decades under the least error that is not 0: where 0 is drawn
 
 // 3 significant digits without exponent where that is short.
@@ -40,8 +42,7 @@ export function costSection(wanted: () => boolean): HTMLElement {
     oninput: () => draw() });
   const budgetOut = h("output", { for: budget.id });
   const advice = h("p", { class: "told", role: "status" });
-  const plot = s("svg", { viewBox: `0 0 ${W} ${H}`, class: "cost-plot", role: "application",
-    tabindex: 0 });
+  const plot = s("svg", { class: "cost-plot", role: "application", tabindex: 0 });
   const told = h("p", { class: "told", role: "status", "aria-live": "polite" });
   const rows = h("tbody");
   const headUnit = h("th", { scope: "col" });
@@ -74,6 +75,8 @@ export function costSection(wanted: () => boolean): HTMLElement {
 
   function draw(): void {
     const one = current();
+    const { W, PAD, below } = narrow.matches ? NARROW : WIDE;
+    plot.setAttribute("viewBox", `0 0 ${W} ${H}`);
     const name = unit.value;
     const points = sorted();
     const timed = points.filter((p) => p.time > 0).map((p) => Math.log10(p.time));
@@ -96,14 +99,14 @@ export function costSection(wanted: () => boolean): HTMLElement {
     const grid = [
       ...decades(x0, x1).flatMap((k) => [
         s("line", { class: "grid", x1: x(10 ** k), x2: x(10 ** k), y1: PAD.top, y2: H - PAD.bottom }),
-        s("text", { x: x(10 ** k), y: H - PAD.bottom + 18, "text-anchor": "middle" }, short(10 ** k))]),
+        s("text", { x: x(10 ** k), y: H - PAD.bottom + below, "text-anchor": "middle" }, short(10 ** k))]),
       ...decades(floor, y1).flatMap((k) => [
         s("line", { class: "grid", x1: PAD.left, x2: W - PAD.right, y1: y(10 ** k), y2: y(10 ** k) }),
         s("text", { x: PAD.left - 8, y: y(10 ** k) + 5, "text-anchor": "end" }, short(10 ** k))]),
       exact ? s("text", { x: PAD.left - 8, y: y(0) + 5, "text-anchor": "end" }, "≈ 0") : null,
       s("text", { x: (PAD.left + W - PAD.right) / 2, y: H - 8, "text-anchor": "middle" },
         t("cost.time", { unit: one.time_unit })),
-      s("text", { x: 14, y: H / 2, "text-anchor": "middle", transform: `rotate(-90 14 ${H / 2})` },
+      s("text", { x: below, y: H / 2, "text-anchor": "middle", transform: `rotate(-90 ${below} ${H / 2})` },
         t("cost.error", { unit: name })),
       s("line", { class: "budget", x1: PAD.left, x2: W - PAD.right, y1: y(limit), y2: y(limit) }),
     ];
@@ -190,6 +193,9 @@ export function costSection(wanted: () => boolean): HTMLElement {
   }
   view.onChange(() => {
     if (wanted()) void load();
+  });
+  narrow.addEventListener("change", () => {
+    if (report) draw();
   });
   if (wanted()) void load();
   return root;

@@ -62,11 +62,19 @@ function drawSection(
   const text = (x: number, y: number, value: string, props: Record<string, unknown> = {}): SVGElement =>
     s("text", { x, y, ...props }, value);
   const cardinal = sheet.cardinal[which];
+  // The back surface's z near a height, whose reach from the axis is what its own radius makes it.
+  const radius = sheet.radii_back_mm[which];
+  const backAt = (height: number): number =>
+    radius === null ? center
+      : center + radius - Math.sign(radius) * Math.sqrt(Math.max(0, radius * radius - height * height));
   const planes: SVGElement[] = [];
-  const plane = (at: number | null | undefined, name: string): void => {
+  // H's reaches higher, H′'s lower: each has its name there, behind the lens.
+  const plane = (at: number | null | undefined, name: "H" | "H′"): void => {
     if (at === null || at === undefined || at < BOX.left || at > BOX.right) return;
-    planes.push(s("line", { class: "plane", x1: at, x2: at, y1: -7, y2: 7 }));
-    planes.push(text(at, name === "H" ? -8 : 10.5, name, { class: "tiny", "text-anchor": "middle" }));
+    const [top, bottom] = name === "H" ? [-10, 7] : [-7, 10];
+    planes.push(s("line", { class: "plane", x1: at, x2: at, y1: top, y2: bottom }));
+    const back = Math.max(at, backAt(name === "H" ? -top : -bottom));
+    planes.push(text(back + 1.2, name === "H" ? -7.6 : 9.4, name, { class: "value" }));
   };
   plane(cardinal?.front_principal_mm, "H");
   const backPrincipal = cardinal?.back_principal_mm;

@@ -19,7 +19,9 @@ const COLUMNS = 49;
 const ROWS = 41;
 const LINE_STEPS = 40;
 const LINE_MAX_DEG = 40;
-const LABEL_MM = [7, 3]; // room for a label of a line
+const LABEL_MM = [8, 3.4]; // room for a label of a line
+// Lines lie a hair above their level: a zone that is flat at a round power has no line through it.
+const ABOVE = 1e-6;
 const PROGRESSIVE_GRID = 61;
 const COLOURED = 0.97; // share of the lens whose values the colours span
 const PROGRESSIVE_HALF_MM = 28;
@@ -183,7 +185,8 @@ export function mapsSection(store: Store, wanted: () => boolean): MapsSection {
       : kind === "progPower"
         ? (v: number) => rising((v - bottom) / Math.max(0.05, top - bottom))
         : (v: number) => rising(v / Math.max(top, 0.25));
-    const levels = top - bottom < 0.01 ? [] : roundLevels(bottom, top);
+    const levels = top - bottom < 0.01 ? []
+      : roundLevels(bottom, top).filter((level) => f.signed || level > 0);
     const clip = uniqueId("clip");
     const dx = f.halfX / (n - 1);
     const dy = f.halfY / (m - 1);
@@ -196,10 +199,11 @@ export function mapsSection(store: Store, wanted: () => boolean): MapsSection {
     const lines = levels.map((level, turn) => {
       const toward = -0.7 - (turn * Math.PI) / 3;
       const off = ([x, y]: [number, number]): number => -Math.cos(Math.atan2(y, x) - toward);
-      const segments = isoLine(f.grid, level);
+      const segments = isoLine(f.grid, level + ABOVE);
       const spot = segments
         .map(([a, b, c, d]) => at((a + c) / 2, (b + d) / 2))
-        .filter(([x, y]) => inside(x * 1.12, y * 1.12, f.outline))
+        .filter(([x, y]) => [-1, 1].every((side) =>
+          inside(x + (side * LABEL_MM[0]) / 2, y * 1.12, f.outline)))
         .sort((p, q) => off(p) - off(q))
         .find(clear);
       if (spot) {

@@ -58,8 +58,7 @@ export function numbersSection(
     return h("tr", {},
       h("th", { scope: "row" },
         h("button", { type: "button", class: "why-link", onclick: () => explain(row.key) },
-          t(`number.${row.key}` as TextKey)),
-        h("span", { class: "unit" }, ` ${row.unit}`)),
+          t(`number.${row.key}` as TextKey), h("span", { class: "unit" }, ` ${row.unit}`))),
       ...values);
   });
   const verdicts = EYES.map(() => h("td", { class: "verdict" }));

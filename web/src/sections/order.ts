@@ -17,7 +17,7 @@ import { filesCard } from "./files";
 interface EyeCard {
   root: HTMLElement;
   show(rx: EyeRx): void;
-  setImpossible(impossible: boolean): void;
+  setImpossible(why: string | null): void;
 }
 
 function eyeCard(store: Store, eye: EyeName): EyeCard {
@@ -105,11 +105,13 @@ function eyeCard(store: Store, eye: EyeName): EyeCard {
     );
   }
   let impossible = false;
+  const reason = h("p", { class: "field-problem", hidden: true });
   const heading = uniqueId("eye");
   const root = h("section", { class: `card eye eye-${eye}`, "aria-labelledby": heading },
     h("h3", { id: heading }, t(`eye.${eye}` as TextKey),
       h("abbr", { title: t(`eye.${eye}.latin` as TextKey) }, eye === "right" ? "OD" : "OS")),
     h("div", { class: "row3" }, fields.sphere.root, fields.cylinder.root, fields.axis.root),
+    reason,
     h("div", { class: "sliders" },
       h("div", {}, h("span", { class: "slider-name" }, t("rx.sphere")), sphereSlider,
         h("span", { class: "slider-name" }, t("rx.cylinder")), cylinderSlider),
@@ -128,9 +130,12 @@ function eyeCard(store: Store, eye: EyeName): EyeCard {
       follow();
     },
     // Says it at the power too: the alert above the form may be out of sight.
-    setImpossible(now) {
+    setImpossible(why) {
+      const now = why !== null;
       if (now || impossible) fields.sphere.setProblem(now ? t("error.impossibleHere") : null);
       impossible = now;
+      reason.hidden = !now;
+      setText(reason, why ?? "");
     },
   };
 }
@@ -265,7 +270,7 @@ export function orderForm(store: Store): HTMLElement {
   });
   store.onProblem((p) => {
     problem.hidden = p === null;
-    for (const eye of EYES) eyes[eye].setImpossible(p?.eye === eye);
+    for (const eye of EYES) eyes[eye].setImpossible(p?.eye === eye ? p.text : null);
     if (!p) return;
     problem.replaceChildren(
       h("strong", {}, t("error.impossible", { eye: t(`eye.${p.eye}` as TextKey) })),

@@ -26,12 +26,13 @@ interface Frame {
   half: number; // height shown, mm
 }
 
-const W = 920;
 const H = 400;
+// As in style.css: a narrow drawing is a taller one.
+const narrow = matchMedia("(max-width: 480px)");
 
 export function raysSection(store: Store, wanted: () => boolean): HTMLElement {
   let mode: Mode = "wearer";
-  const drawing = s("svg", { viewBox: `0 0 ${W} ${H}`, role: "img", class: "rays-drawing" });
+  const drawing = s("svg", { role: "img", class: "rays-drawing" });
   const told = h("p", { class: "told", role: "status", "aria-live": "polite" });
   const slider = (
     key: string, min: number, max: number, step: number, value: number, show: (v: number) => string,
@@ -98,13 +99,17 @@ export function raysSection(store: Store, wanted: () => boolean): HTMLElement {
     const far = Math.min(1500, Math.max(80, Math.abs(focus ?? 1500) * 1.15));
     // The whole lens, and in the wearer's view heights and lengths to one scale.
     const half = Math.max(27, 1.06 * high, -1.06 * low);
+    const W = narrow.matches ? 560 : 920;
+    drawing.setAttribute("viewBox", `0 0 ${W} ${H}`);
     const long = (half * W) / H;
+    const eyesEnd = cornea + 2 * EYE_RADIUS_MM + 2;
+    const before = narrow.matches ? 0.7 : 1; // the eye behind the lens has to be in sight
     const frame: Frame =
       mode === "wearer"
-        ? { z0: -long, z1: long, half }
+        ? { z0: -before * long, z1: (2 - before) * long, half }
         : mode === "far"
-          ? { z0: -far, z1: (focus ?? -1) > 0 ? far : 0.35 * far, half }
-          : { z0: -Math.min(order.camera, 120) - 6, z1: 44, half };
+          ? { z0: -far, z1: (focus ?? -1) > 0 ? far : Math.max(0.35 * far, eyesEnd), half }
+          : { z0: -Math.min(order.camera, 120) - 6, z1: eyesEnd, half };
     const x = (z: number): number => ((z - frame.z0) / (frame.z1 - frame.z0)) * W;
     const y = (height: number): number => H / 2 - (height / frame.half) * (H / 2);
     const at = (height: number, z: number): string => `${x(z).toFixed(2)} ${y(height).toFixed(2)}`;
@@ -126,7 +131,7 @@ export function raysSection(store: Store, wanted: () => boolean): HTMLElement {
     };
     if (onAxis(-1)[0] !== 0) line([onAxis(frame.z0), onAxis(frame.z1)], "axis");
 
-    if (mode === "observer") drawObserver(slot, degrees, cornea, order, line, label);
+    if (mode === "observer") drawObserver(slot, degrees, cornea, order, frame.z1, line, label);
     else drawFan(slot, degrees, low, high, frame, line);
 
     const mark = (z: number | null | undefined, text: string): void => {
@@ -217,7 +222,7 @@ export function raysSection(store: Store, wanted: () => boolean): HTMLElement {
 
   // The ray from the camera to the iris' edge, and where the edge therefore seems to be.
   function drawObserver(
-    slot: number, degrees: number, cornea: number, order: Order,
+    slot: number, degrees: number, cornea: number, order: Order, end: number,
     line: (points: [number, number][], className: string) => void,
     label: (height: number, z: number, text: string, anchor?: string) => void,
   ): void {
@@ -242,7 +247,7 @@ export function raysSection(store: Store, wanted: () => boolean): HTMLElement {
       line([[apparent - 0.35 * Math.sign(target), iris], [apparent + 0.35 * Math.sign(target), iris]], "apparent");
       if (target > 0) {
         const ratio = apparent / target;
-        label(IRIS_RADIUS_MM + (ratio > 1 ? 2.2 : 1), iris + 2, t(ratio > 1 ? "rays.larger" : "rays.smaller"), "start");
+        label(EYE_RADIUS_MM + 2, end - 1, t(ratio > 1 ? "rays.larger" : "rays.smaller"), "end");
         setText(told, t("rays.toldObserver", {
           mm: fixed(apparent, 2), bare: fixed(target, 2), ratio: fixed(ratio, 4),
         }));
@@ -252,8 +257,10 @@ export function raysSection(store: Store, wanted: () => boolean): HTMLElement {
   }
 
   store.onLenses(draw, wanted);
-  view.onChange(() => {
+  const again = (): void => {
     if (wanted()) draw();
-  });
+  };
+  view.onChange(again);
+  narrow.addEventListener("change", again);
   return root;
 }

@@ -50,7 +50,7 @@ export function solidMesh(contour: [number, number][], surfaces: (p: number[]) =
 }
 
 export function solidSection(store: Store, wanted: () => boolean): HTMLElement {
-  const canvas = h("canvas", { class: "solid", tabindex: 0, role: "img",
+  const canvas = h("canvas", { class: "solid", tabindex: 0, role: "application",
     "aria-label": t("solid.alt") });
   const status = h("p", { class: "status" });
   const root = h("section", { class: "card" },

@@ -9,6 +9,8 @@ import {
 import type { SolidMesh } from "./solid";
 
 const EDGE_ANGLE_DEG = 35;
+const FIELD_DEG = 30;
+const LEAST_RADIUS_MM = 32; // in sight: lenses of usual size are shown to one scale
 
 export interface SolidScene {
   show(mesh: SolidMesh): void;
@@ -18,8 +20,8 @@ export interface SolidScene {
 export function createScene(canvas: HTMLCanvasElement): SolidScene {
   const renderer = new WebGLRenderer({ canvas, antialias: true, alpha: true });
   const scene = new Scene();
-  const camera = new PerspectiveCamera(30, 1, 10, 600);
-  camera.position.set(0, 0, 130);
+  const camera = new PerspectiveCamera(FIELD_DEG, 1, 10, 900);
+  let radius = LEAST_RADIUS_MM;
   scene.add(new AmbientLight(0xffffff, 1.3));
   const lamp = new DirectionalLight(0xffffff, 2.4);
   lamp.position.set(-60, 80, 90);
@@ -36,6 +38,9 @@ export function createScene(canvas: HTMLCanvasElement): SolidScene {
     renderer.setPixelRatio(Math.min(2, devicePixelRatio));
     renderer.setSize(width, height, false);
     camera.aspect = width / height;
+    // So far that the lens stays in sight in any turn, on a narrow canvas too.
+    const half = (FIELD_DEG * Math.PI) / 360;
+    camera.position.z = radius / Math.sin(Math.atan(Math.tan(half) * Math.min(1, camera.aspect)));
     camera.updateProjectionMatrix();
     renderer.render(scene, camera);
   }
@@ -51,6 +56,10 @@ export function createScene(canvas: HTMLCanvasElement): SolidScene {
       geometry.setAttribute("position", new BufferAttribute(mesh.positions, 3));
       geometry.setIndex(mesh.indices);
       geometry.computeVertexNormals();
+      // It turns about its own middle, not about the optical centre.
+      geometry.center();
+      geometry.computeBoundingSphere();
+      radius = Math.max(LEAST_RADIUS_MM, geometry.boundingSphere!.radius);
       const ink = getComputedStyle(canvas).getPropertyValue("--lens-line").trim();
       const glass = new MeshPhongMaterial({ color: new Color("#9fd3d8"), transparent: true,
         opacity: 0.5, shininess: 140, specular: new Color("#ffffff"), side: DoubleSide,

@@ -63,9 +63,11 @@ export function chart(xLabel: string, yLabel: string, series: ChartSeries[]): Ch
     width = root.clientWidth;
     build();
   }).observe(root);
-  new MutationObserver(() => {
+  const again = (): void => {
     if (plot) build();
-  }).observe(document.documentElement, { attributes: true, attributeFilter: ["data-theme"] });
+  };
+  matchMedia("(prefers-color-scheme: dark)").addEventListener("change", again);
+  new MutationObserver(again).observe(document.documentElement, { attributes: true, attributeFilter: ["data-theme"] });
   return {
     root,
     set(next) {

@@ -23,7 +23,8 @@ const isDark = (): boolean =>
   (document.documentElement.dataset.theme ??
     (matchMedia("(prefers-color-scheme: dark)").matches ? "dark" : "light")) === "dark";
 
-export function themeButton(): HTMLElement {
+// `onChange`: for what has read the colours and does not follow by itself.
+export function themeButton(onChange: () => void): HTMLElement {
   const button = h("button", { type: "button", class: "quiet", onclick: () => {
     const next = isDark() ? "light" : "dark";
     document.documentElement.dataset.theme = next;
@@ -33,10 +34,15 @@ export function themeButton(): HTMLElement {
       // Without storage the choice lasts as long as the page.
     }
     show();
+    onChange();
   } });
   const show = (): void => {
     button.textContent = t(isDark() ? "page.light" : "page.dark");
   };
+  matchMedia("(prefers-color-scheme: dark)").addEventListener("change", () => {
+    show();
+    onChange();
+  });
   show();
   return button;
 }
