@@ -16,7 +16,7 @@
 namespace lorgnette {
 namespace {
 
-constexpr std::size_t kFramesForFocal = 48;
+constexpr std::size_t kFramesForFocal = 32;
 constexpr double kFocalLogSigma = 0.25;  // about the typical focal length
 // How far the shape may leave its prior once the anchors have told the depth (mm).
 const Eigen::Vector3d kClipSigma_mm(20, 20, 1);
@@ -122,6 +122,31 @@ std::vector<Eigen::Isometry3d> Completed(const std::vector<const FaceLandmarks*>
   return poses;
 }
 
+// The landmarks that shape the face: those of many looks, where there are any.
+std::vector<const FaceLandmarks*> ShapingLandmarks(const std::vector<FollowedFrame>& frames) {
+  std::vector<const FaceLandmarks*> steady, all;
+  for (const FollowedFrame& frame : frames) {
+    steady.push_back(frame.steady ? &*frame.steady : nullptr);
+    all.push_back(frame.landmarks ? &*frame.landmarks : nullptr);
+  }
+  const bool any = std::any_of(steady.begin(), steady.end(), [](auto* s) { return s != nullptr; });
+  return any ? steady : all;
+}
+
+// A first face, and a pose for each frame with landmarks.
+std::vector<Eigen::Vector3d> FirstFace(const Camera& camera, const CanonicalMesh& canonical,
+                                       const std::vector<FollowedFrame>& frames, double pd_mm,
+                                       std::vector<Eigen::Isometry3d>& poses) {
+  const std::vector<const FaceLandmarks*> shaping = ShapingLandmarks(frames);
+  std::vector<Eigen::Vector3d> face = FitFace(camera, canonical, shaping, pd_mm, poses);
+  for (std::size_t f = 0; f < frames.size(); ++f) {
+    if (shaping[f] != nullptr || !frames[f].landmarks) continue;
+    poses[f] = FitLandmarkPose(camera, face, canonical.rigid_weight, *frames[f].landmarks)
+                   .camera_from_head;
+  }
+  return face;
+}
+
 // The focal length from some frames of the clip, beforehand: a face shaped under a wrong one is
 // bent, and its poses with it.
 Camera CameraOfClip(const std::vector<FollowedFrame>& frames, const CanonicalMesh& canonical,
@@ -129,7 +154,8 @@ Camera CameraOfClip(const std::vector<FollowedFrame>& frames, const CanonicalMes
   std::vector<FollowedFrame> some;
   const std::size_t stride = 1 + (frames.size() - 1) / kFramesForFocal;
   for (std::size_t f = 0; f < frames.size(); ++f) {
-    if (frames[f].landmarks && (f % stride == 0 || frames.size() - f <= stride)) {
+    const bool spread = f % stride == 0 || frames.size() - f <= stride;
+    if (frames[f].landmarks && (spread || frames[f].steady)) {
       some.push_back(frames[f]);
     }
   }
@@ -142,7 +168,7 @@ Camera CameraOfClip(const std::vector<FollowedFrame>& frames, const CanonicalMes
   Camera camera{width, height, focal, focal, width / 2.0, height / 2.0};
   TriangleMesh face = canonical.mesh;
   std::vector<Eigen::Isometry3d> poses;
-  face.positions = FitFace(camera, canonical, landmarks, pd_mm, poses);
+  face.positions = FirstFace(camera, canonical, some, pd_mm, poses);
   ComputeVertexNormals(face);
   AnchorClip({some, poses, face, canonical.rigid_weight}, kFocalLogSigma, camera);
   return camera;
@@ -193,7 +219,7 @@ ClipFit FitClip(const std::vector<FollowedFrame>& frames, const CanonicalMesh& c
 
   std::vector<Eigen::Isometry3d> landmark_poses;
   std::vector<Eigen::Vector3d>& points = track.face.positions;
-  points = FitFace(track.camera, canonical, landmarks, pd_mm, landmark_poses);
+  points = FirstFace(track.camera, canonical, frames, pd_mm, landmark_poses);
   ComputeVertexNormals(track.face);
 
   const AnchoredClip anchored =
@@ -201,7 +227,8 @@ ClipFit FitClip(const std::vector<FollowedFrame>& frames, const CanonicalMesh& c
   std::vector<Eigen::Isometry3d> poses = Completed(landmarks, landmark_poses, anchored.poses);
 
   ApplyAnchorDepths(anchored.views, points);
-  points = ShapeFromLandmarks(track.camera, points, kClipSigma_mm, landmarks, poses);
+  const std::vector<const FaceLandmarks*> shaping = ShapingLandmarks(frames);
+  points = ShapeFromLandmarks(track.camera, points, kClipSigma_mm, shaping, poses);
   const Similarity head = HeadFromPoints(points, canonical, pd_mm);
   for (Eigen::Vector3d& p : points) p = head(p);
   for (Eigen::Isometry3d& pose : poses) pose = head.Rebased(pose);
@@ -209,9 +236,9 @@ ClipFit FitClip(const std::vector<FollowedFrame>& frames, const CanonicalMesh& c
   const std::vector<Eigen::Vector3d> generic = CanonicalHead(canonical, pd_mm);
   std::vector<double> texture_yaw, network_yaw;
   for (std::size_t f = 0; f < frames.size(); ++f) {
-    if (landmarks[f] == nullptr) continue;
+    if (shaping[f] == nullptr) continue;
     const PoseFit read =
-        FitLandmarkPose(track.camera, generic, canonical.rigid_weight, *landmarks[f]);
+        FitLandmarkPose(track.camera, generic, canonical.rigid_weight, *shaping[f]);
     network_yaw.push_back(ApparentYaw(read.camera_from_head));
     texture_yaw.push_back(ApparentYaw(poses[f]));
   }

@@ -6,6 +6,7 @@
 #include <opencv2/imgproc.hpp>
 #include <utility>
 
+#include "base/check.h"
 #include "tracking/opencv_view.h"
 
 namespace lorgnette {
@@ -24,6 +25,11 @@ constexpr double kCropSide = 1.2 / 1.5;  // of the landmark region's side: the f
 
 constexpr int kEyePixels = 96;
 constexpr double kEyeSide = 1.6;  // of the distance between the lids' corners
+
+// Longer looks: frames, looks at all of them together (two runs of the network each), and the most
+// at one.
+constexpr std::size_t kPortraits = 24;
+constexpr int kLooks = 72, kMostLooks = 12;
 
 constexpr double kSmallestSide = 12;  // px; nothing can be told from less
 
@@ -53,15 +59,18 @@ FaceCrop EyeCrop(const ImageRgb8& frame, const FaceLandmarks& face, const EyeLan
 
 }  // namespace
 
-FaceFollower::FaceFollower(FaceDetector detector, FaceLandmarker landmarker)
-    : detector_(std::move(detector)), landmarker_(std::move(landmarker)) {}
+FaceFollower::FaceFollower(FaceDetector detector, FaceLandmarker landmarker,
+                           CanonicalMesh canonical)
+    : detector_(std::move(detector)),
+      landmarker_(std::move(landmarker)),
+      canonical_(std::move(canonical)) {}
 
 Result<FaceFollower> FaceFollower::Load(const std::string& model_dir,
                                         const CanonicalMesh& canonical) {
   LG_ASSIGN(FaceDetector detector, FaceDetector::Load(model_dir + "/face_detection.onnx"));
   LG_ASSIGN(FaceLandmarker landmarker,
             FaceLandmarker::Load(model_dir + "/face_landmark.onnx", canonical.mirror));
-  return FaceFollower(std::move(detector), std::move(landmarker));
+  return FaceFollower(std::move(detector), std::move(landmarker), canonical);
 }
 
 bool FaceFollower::IsCut(const ImageRgb8& frame) {
@@ -86,6 +95,7 @@ bool FaceFollower::IsCut(const ImageRgb8& frame) {
 
 FollowedFrame FaceFollower::Next(const ImageRgb8& frame, double time_s) {
   FollowedFrame out;
+  const std::size_t number = frame_++;
   out.time_s = time_s;
   out.cut_before = IsCut(frame);
   if (out.cut_before) region_.reset();
@@ -113,11 +123,23 @@ FollowedFrame FaceFollower::Next(const ImageRgb8& frame, double time_s) {
     out.crop.grey = SampleGrey(frame, out.crop.region, kCropPixels);
     out.right_eye = EyeCrop(frame, found, kRightEye, region_->angle);
     out.left_eye = EyeCrop(frame, found, kLeftEye, region_->angle);
+    portraits_.Offer(number, frame, found, canonical_);
     out.landmarks = std::move(found);
     return out;
   }
   region_.reset();
   return out;
+}
+
+void FaceFollower::LookAgain(std::vector<FollowedFrame>& frames) {
+  LG_CHECK_EQ(frames.size(), frame_);
+  std::size_t start = 0;
+  const std::vector<const Portrait*> chosen = portraits_.MostFrontal(kPortraits);
+  const int looks = chosen.empty() ? 0 : std::min(kMostLooks, kLooks / int(chosen.size()));
+  for (const Portrait* portrait : chosen) {
+    frames[portrait->frame].steady = lorgnette::LookAgain(*portrait, looks, start, landmarker_);
+    start += std::size_t(looks);
+  }
 }
 
 }  // namespace lorgnette

@@ -5,12 +5,14 @@
 
 #include <optional>
 #include <string>
+#include <vector>
 
 #include "base/image.h"
 #include "base/result.h"
 #include "tracking/canonical_mesh.h"
 #include "tracking/face_detector.h"
 #include "tracking/face_landmarker.h"
+#include "tracking/portraits.h"
 
 namespace lorgnette {
 
@@ -24,6 +26,7 @@ struct FollowedFrame {
   double time_s = 0;
   bool cut_before = false;                 // the film was cut between the frame before and this one
   std::optional<FaceLandmarks> landmarks;  // none: no face
+  std::optional<FaceLandmarks> steady;     // of many looks, in a few frames (LookAgain)
   FaceCrop crop;                           // empty without landmarks
   FaceCrop right_eye, left_eye;            // finer, of the lids and little more
 };
@@ -35,11 +38,18 @@ class FaceFollower {
 
   FollowedFrame Next(const ImageRgb8& frame, double time_s);
 
+  // After the last frame: gives the most frontal of `frames`, all that Next() returned, their
+  // steady landmarks.
+  void LookAgain(std::vector<FollowedFrame>& frames);
+
  private:
-  FaceFollower(FaceDetector detector, FaceLandmarker landmarker);
+  FaceFollower(FaceDetector detector, FaceLandmarker landmarker, CanonicalMesh canonical);
   bool IsCut(const ImageRgb8& frame);
   FaceDetector detector_;
   FaceLandmarker landmarker_;
+  CanonicalMesh canonical_;
+  Portraits portraits_;
+  std::size_t frame_ = 0;  // number of the next frame
   std::optional<FaceRegion> region_;
   int since_mirror_ = 0;              // frames since the network last saw the mirror image
   Image<std::uint8_t, 1> thumbnail_;  // of the frame before

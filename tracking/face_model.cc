@@ -40,7 +40,13 @@ Eigen::Vector3d Apex(const std::vector<Eigen::Vector3d>& points, const EyeLandma
   return {corners.x(), (corners.y() + lids.y()) / 2, lids.z()};
 }
 
-// Weighted rigid fit b ~ rotation * a + shift (Kabsch).
+double AngleToCamera(const Eigen::Isometry3d& camera_from_head) {
+  const Eigen::Vector3d out_of_face = camera_from_head.linear().col(2);
+  return std::acos(std::clamp(-out_of_face.z(), -1.0, 1.0));
+}
+
+}  // namespace
+
 Eigen::Matrix3d BestRotation(const std::vector<Eigen::Vector3d>& a,
                              const std::vector<Eigen::Vector3d>& b,
                              const std::vector<double>& weights) {
@@ -62,13 +68,6 @@ Eigen::Matrix3d BestRotation(const std::vector<Eigen::Vector3d>& a,
                        (svd.matrixU() * svd.matrixV().transpose()).determinant() < 0 ? -1 : 1);
   return svd.matrixU() * sign.asDiagonal() * svd.matrixV().transpose();
 }
-
-double AngleToCamera(const Eigen::Isometry3d& camera_from_head) {
-  const Eigen::Vector3d out_of_face = camera_from_head.linear().col(2);
-  return std::acos(std::clamp(-out_of_face.z(), -1.0, 1.0));
-}
-
-}  // namespace
 
 Pupils PupilsOf(const std::vector<Eigen::Vector3d>& points) {
   Pupils pupils{Apex(points, kRightEye), Apex(points, kLeftEye)};

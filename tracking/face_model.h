@@ -34,6 +34,11 @@ struct Similarity {
   }
 };
 
+// Rotation of the weighted least-squares rigid fit b ~ rotation * a + shift (Kabsch 1976).
+Eigen::Matrix3d BestRotation(const std::vector<Eigen::Vector3d>& a,
+                             const std::vector<Eigen::Vector3d>& b,
+                             const std::vector<double>& weights);
+
 // Takes `points` (any space, canonical topology) to head space: mirror plane x = 0 by the best fit
 // of the points to their own mirror image, upright as the canonical face, pupils `pd_mm` apart and
 // the origin midway between them.
@@ -62,7 +67,7 @@ std::vector<Eigen::Vector3d> ShapeFromLandmarks(const Camera& camera,
                                                 const std::vector<Eigen::Isometry3d>& poses);
 
 // Shape and poses from landmarks alone, in turn, from the canonical face on. Returns the points in
-// head space; `poses` (identity without a face) come back fitted to them.
+// head space; `poses` (identity where there is null) come back fitted to them.
 std::vector<Eigen::Vector3d> FitFace(const Camera& camera, const CanonicalMesh& canonical,
                                      const std::vector<const FaceLandmarks*>& frames, double pd_mm,
                                      std::vector<Eigen::Isometry3d>& poses);

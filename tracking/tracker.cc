@@ -71,6 +71,11 @@ Result<HeadTrack> Tracker::Finish() {
     return Failure(fmt::format("video: no face found in any of {} frames, want at least one",
                                s.frames.size()));
   }
+  try {
+    s.follower.LookAgain(s.frames);
+  } catch (const cv::Exception& e) {
+    return Failure(fmt::format("the face network failed: {}", e.err));
+  }
   std::optional<Camera> camera = s.options.camera;
   if (!camera && s.options.focal_px > 0) {
     const double f = s.options.focal_px;
