@@ -16,7 +16,7 @@
 namespace lorgnette {
 namespace {
 
-constexpr std::size_t kFramesForFocal = 32;
+constexpr std::size_t kFramesForFocal = 48;
 constexpr double kFocalLogSigma = 0.25;  // about the typical focal length
 // How far the shape may leave its prior once the anchors have told the depth (mm).
 const Eigen::Vector3d kClipSigma_mm(20, 20, 1);
