@@ -38,7 +38,7 @@ TEST(Portraits, AreTheMostFrontalFramesInOrderOfTime) {
   ASSERT_EQ(chosen.size(), 5u);
   for (std::size_t k = 0; k < 5; ++k) EXPECT_EQ(chosen[k]->frame, 8 + k);
   EXPECT_FALSE(chosen[0]->picture.empty());
-  EXPECT_EQ(portraits.MostFrontal(100).size(), 32u);
+  EXPECT_EQ(portraits.MostFrontal(100).size(), 40u);
 }
 
 TEST(Portraits, AreSpreadOverALongClipAndFew) {
