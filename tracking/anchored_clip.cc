@@ -99,7 +99,11 @@ std::vector<std::size_t> Anchorer::NearestViews(std::size_t f) const {
   };
   std::stable_sort(order.begin(), order.end(),
                    [&](std::size_t a, std::size_t b) { return angle(a) < angle(b); });
-  if (order.size() > kViewsPerFrame) order.erase(order.begin() + kViewsPerFrame, order.end());
+  // A view sees itself first, which ties it to nothing: two others, or in a fast turn, where every
+  // frame is a view, those of one side lose their hold on those of the other.
+  const bool is_view =
+      std::any_of(views_.begin(), views_.end(), [f](const AnchorView& v) { return v.frame == f; });
+  order.resize(std::min(order.size(), kViewsPerFrame + (is_view ? 1 : 0)));
   return order;
 }
 

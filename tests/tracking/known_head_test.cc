@@ -82,6 +82,29 @@ TEST(Tracker, FollowsAKnownHeadThroughATurnForwardAndBackward) {
   }
 }
 
+// Ten degrees from frame to frame: each frame is a view of its own, tied to its neighbours alone.
+TEST(Tracker, HoldsBothSidesOfAFastTurnTogether) {
+  NEED(test::kModels);
+  const auto head = RenderedHead::Read(test::kTruth);
+  if (!head) GTEST_SKIP() << "needs " << test::kTruth;
+  const Camera camera{480, 360, 840, 840, 240, 180};
+  std::vector<Eigen::Isometry3d> truth;
+  std::vector<ImageRgb8> frames;
+  for (int i = 0; i <= 16; ++i) {
+    const double yaw = 25 * std::sin(kPi * i / 8 + 4.6);
+    truth.push_back(TestPose(yaw, 5 * std::sin(0.6 * i)));
+    truth.back().translation() = Eigen::Vector3d(0.5 * yaw, 5, 600 + 20 * std::sin(0.4 * i));
+    frames.push_back(head->Draw(camera, truth.back()));
+  }
+  const HeadTrack track = Track(frames, camera);
+  for (std::size_t i = 0; i < truth.size(); ++i) {
+    const Eigen::Isometry3d& found = track.frames[i].camera_from_head;
+    EXPECT_LT(AngleDeg(truth[i].linear(), found.linear()), 0.5) << i;
+    // Scale by the irises, small as they are here, is good to a quarter of a per cent.
+    EXPECT_LT((found.translation() - truth[i].translation()).norm(), 1.5) << i;
+  }
+}
+
 TEST(Tracker, HandlesCutsAndLostFacesOfAFilmPutTogether) {
   NEED(test::kModels);
   NEED(test::kTruth);
