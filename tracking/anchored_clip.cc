@@ -103,7 +103,8 @@ std::vector<std::size_t> Anchorer::NearestViews(std::size_t f) const {
   // frame is a view, those of one side lose their hold on those of the other.
   const bool is_view =
       std::any_of(views_.begin(), views_.end(), [f](const AnchorView& v) { return v.frame == f; });
-  order.resize(std::min(order.size(), kViewsPerFrame + (is_view ? 1 : 0)));
+  const std::size_t most = kViewsPerFrame + (is_view ? 1 : 0);
+  if (order.size() > most) order.erase(order.begin() + std::ptrdiff_t(most), order.end());
   return order;
 }
 
