@@ -38,13 +38,14 @@ void PlaceSamples(const PixelBox& area, int side, const std::vector<bool>& wante
   }
 }
 
-std::vector<bool> PixelsToRefine(const PixelBox& area, int width, int height,
+std::vector<bool> PixelsToRefine(const PixelBox& area, const PixelBox& box,
                                  const std::vector<Glance>& glances) {
   using Kind = CameraSample::Kind;
   std::vector<bool> wanted(std::size_t(kTileSide) * kTileSide, false);
   const auto at = [&](int x, int y) {
-    return glances[std::size_t(std::clamp(y, 0, height - 1)) * std::size_t(width) +
-                   std::size_t(std::clamp(x, 0, width - 1))];
+    const std::size_t row = std::size_t(std::clamp(y, box.y0, box.y1 - 1) - box.y0);
+    const std::size_t column = std::size_t(std::clamp(x, box.x0, box.x1 - 1) - box.x0);
+    return glances[row * std::size_t(box.x1 - box.x0) + column];
   };
   for (int y = area.y0; y < area.y1; ++y) {
     for (int x = area.x0; x < area.x1; ++x) {

@@ -23,7 +23,8 @@ struct Glance {
 };
 
 // Pixels whose neighbourhood meets different things, and those of the frame with some contrast.
-std::vector<bool> PixelsToRefine(const PixelBox& area, int width, int height,
+//   glances  of the pixels of `box`, row by row; beyond it they are taken to go on as at its border
+std::vector<bool> PixelsToRefine(const PixelBox& area, const PixelBox& box,
                                  const std::vector<Glance>& glances);
 
 // Adaptive, where only the face's shadow falls: samples lie on every second column and row of the

@@ -136,12 +136,12 @@ std::vector<Eigen::Vector3f> BakedShadow::Relight(const HeadLight& light) const 
   };
   std::vector<VertexLight> lights(open_.size());
   tbb::parallel_for(std::size_t(0), open_.size(), [&](std::size_t i) {
-    Eigen::Vector3f seen = Eigen::Vector3f::Zero(), all = Eigen::Vector3f::Zero();
+    Eigen::Vector4f seen = Eigen::Vector4f::Zero(), all = Eigen::Vector4f::Zero();
     for (std::size_t j = 0; j < kHarmonics; ++j) {
       seen += open_[i].seen[j] * light.harmonics[j];
       all += open_[i].all[j] * light.harmonics[j];
     }
-    lights[i] = {seen, all};
+    lights[i] = {seen.head<3>(), all.head<3>()};
   });
   // Ringing of the harmonics could leave less light than the list has lost.
   const auto ratio = [](float open, float lost) {

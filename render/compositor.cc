@@ -222,7 +222,14 @@ RenderCounts Compositor::Draw(const Sitting& sitting, const PictureEffects& effe
   const bool adaptive = head.options.adaptive && side > 1;
 
   std::vector<RenderCounts> counts_of(tiles.size());
-  std::vector<Glance> glances(adaptive ? std::size_t(width) * std::size_t(height) : 0);
+  // One pixel more than is drawn, so that its border is met by what lies beside it.
+  const PixelBox box = Clipped(Grown(mask.Bounds(), 1), width, height);
+  std::vector<Glance> glances(adaptive ? std::size_t(box.x1 - box.x0) * std::size_t(box.y1 - box.y0)
+                                       : 0);
+  const auto glance = [&](int x, int y) -> Glance& {
+    return glances[std::size_t(y - box.y0) * std::size_t(box.x1 - box.x0) +
+                   std::size_t(x - box.x0)];
+  };
   const auto put_shadow = [&](std::size_t i) {
     const std::size_t tile = tiles[i];
     const PixelBox area = mask.Area(tile, width, height);
@@ -251,7 +258,7 @@ RenderCounts Compositor::Draw(const Sitting& sitting, const PictureEffects& effe
     for (int y = area.y0; y < area.y1; ++y) {
       for (int x = area.x0; x < area.x1; ++x) {
         const std::size_t pixel = std::size_t((y - area.y0) * kTileSide + (x - area.x0));
-        glances[std::size_t(y) * std::size_t(width) + std::size_t(x)] = {kind[pixel], 0};
+        glance(x, y) = {kind[pixel], 0};
         if ((factor[pixel].array() == 1.0f).all()) continue;
         ++counts_of[i].shadowed_pixels;
         canvas.Put(x, y, factor[pixel].cwiseProduct(input.Pixel(x, y)));
@@ -269,7 +276,7 @@ RenderCounts Compositor::Draw(const Sitting& sitting, const PictureEffects& effe
     std::vector<bool> wanted;
     if (refine) {
       if (content == kTileShadow) return;
-      wanted = PixelsToRefine(area, width, height, glances);
+      wanted = PixelsToRefine(area, box, glances);
       if (std::find(wanted.begin(), wanted.end(), true) == wanted.end()) return;
     }
     // The face's own pixels need no second sample: equation (2) is taken once a pixel.
@@ -310,8 +317,8 @@ RenderCounts Compositor::Draw(const Sitting& sitting, const PictureEffects& effe
     if (adaptive && !refine) {
       for (const CameraSample& s : samples) {
         const bool frame = s.kind == CameraSample::Kind::kFrame;
-        glances[std::size_t(s.y) * std::size_t(width) + std::size_t(s.x)] = {
-            s.kind, frame ? CodeFromLinear(s.inserted.mean()) : std::uint8_t{0}};
+        glance(int(s.x), int(s.y)) = {s.kind,
+                                      frame ? CodeFromLinear(s.inserted.mean()) : std::uint8_t{0}};
       }
     }
   };

@@ -22,13 +22,14 @@ constexpr float kLift_mm = 0.05f;
 HeadLight LightAt(const std::vector<Eigen::Vector3f>& directions, const BlurredEnvironment& blurred,
                   const Eigen::Matrix3f& world_from_head, float scale) {
   HeadLight light;
-  light.harmonics.fill(Eigen::Vector3f::Zero());
+  light.harmonics.fill(Eigen::Vector4f::Zero());
   const float solid_angle = float(4 * kPi) / float(directions.size());
   for (const Eigen::Vector3f& d : directions) {
     const Eigen::Vector3f cell = scale * solid_angle * blurred.Radiance(world_from_head * d);
     const Harmonics h = EvaluateHarmonics(d);
-    for (int i = 0; i < kHarmonics; ++i)
-      light.harmonics[std::size_t(i)] += h[std::size_t(i)] * cell;
+    for (int i = 0; i < kHarmonics; ++i) {
+      light.harmonics[std::size_t(i)].head<3>() += h[std::size_t(i)] * cell;
+    }
     light.cells.push_back(cell);
   }
   return light;
@@ -77,16 +78,20 @@ BakedIrradiance BakedIrradiance::Bake(const EmbreeScene& scene,
   return baked;
 }
 
-std::vector<Eigen::Vector3f> BakedIrradiance::Relight(const HeadLight& light,
-                                                      const Eigen::Vector3f& head_radiance) const {
-  std::vector<Eigen::Vector3f> irradiance(transfer_.size());
-  const Eigen::Vector3f from_head = float(kPi) * head_radiance;
-  tbb::parallel_for(std::size_t(0), transfer_.size(), [&](std::size_t i) {
-    Eigen::Vector3f sum = head_share_[i] * from_head;
-    for (std::size_t j = 0; j < kHarmonics; ++j) sum += transfer_[i][j] * light.harmonics[j];
-    irradiance[i] = sum.cwiseMax(0.0f);
-  });
-  return irradiance;
+Eigen::Vector3f BakedIrradiance::At(const HeadLight& light, const Eigen::Vector3f& head_radiance,
+                                    const Eigen::Vector3i& points,
+                                    const Eigen::Vector3f& weights) const {
+  Harmonics transfer{};
+  float head_share = 0;
+  for (int k = 0; k < 3; ++k) {
+    const std::size_t i = std::size_t(points[k]);
+    head_share += weights[k] * head_share_[i];
+    for (std::size_t j = 0; j < kHarmonics; ++j) transfer[j] += weights[k] * transfer_[i][j];
+  }
+  // Four floats a term: one load and one multiplication for the three channels.
+  Eigen::Vector4f sum = Eigen::Vector4f::Zero();
+  for (std::size_t j = 0; j < kHarmonics; ++j) sum += transfer[j] * light.harmonics[j];
+  return (sum.head<3>() + float(kPi) * head_share * head_radiance).cwiseMax(0.0f);
 }
 
 }  // namespace lorgnette

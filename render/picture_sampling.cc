@@ -126,9 +126,9 @@ FilledPicture::FilledPicture(const InputPicture& input, const std::vector<std::u
       if (!known[i]) continue;
       Eigen::Vector3f sum = Eigen::Vector3f::Zero();
       float count = 0;
-      // Every second pixel both ways: what is made up here needs no more.
-      for (int v = y * kStep; v < std::min((y + 1) * kStep, input.height()); v += 2) {
-        for (int u = x * kStep; u < std::min((x + 1) * kStep, input.width()); u += 2, ++count) {
+      // Every fourth pixel both ways: what is made up here needs no more.
+      for (int v = y * kStep; v < std::min((y + 1) * kStep, input.height()); v += 4) {
+        for (int u = x * kStep; u < std::min((x + 1) * kStep, input.width()); u += 4, ++count) {
           sum += input.Pixel(u, v);
         }
       }

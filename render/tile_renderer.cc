@@ -51,9 +51,10 @@ struct TileRenderer::Regular {
 
 // Where a ray goes that the second surface sent back.
 enum class BackWay : std::uint8_t {
-  kOut,    // through the first surface
-  kWall,   // to the ground edge wall
-  kExact,  // anywhere
+  kOut,       // through the first surface
+  kOutByRim,  // the same, unless the frame's reach into the glass lies between
+  kWall,      // to the ground edge wall, unless the frame lies between
+  kExact,     // anywhere
 };
 
 struct TileRenderer::Batch {
@@ -323,7 +324,7 @@ void TileRenderer::TraceLens(std::size_t lens, Batch& batch, std::vector<CameraS
 
   // Sort out: straight through both surfaces, certainly beside the glass, or neither.
   const ContourIndex& contour = solid.contour();
-  const double rim = head_.rim_depth_mm[lens];
+  const double rim = head_.rim_depth_mm[lens], bevel = head_.options.bevel_mm;
   batch.regular.clear();
   for (std::size_t k = 0; k < n; ++k) {
     const std::uint32_t i = batch.sample_of[k];
@@ -333,12 +334,18 @@ void TileRenderer::TraceLens(std::size_t lens, Batch& batch, std::vector<CameraS
     const ContourIndex::Place at2 = contour.Locate(double(p2.x()), double(p2.y()));
     const bool through =
         batch.status[k] == std::uint8_t(RayStatus::kOk) && at1.inside && at2.inside;
-    if (!through || batch.lens_of[i] != 0 || batch.in.columns[5][k] <= 0) {
+    const float entry = shift + (p1 - batch.in.point(k)).norm();
+    const SceneHit& hit = batch.primary.hits[i];
+    const bool forward = batch.in.columns[5][k] > 0;
+    // Glass beside which the first surface is met, if any, begins behind it with the wall.
+    const bool in_groove = !through && forward && batch.first.columns[5][k] > 0 && hit.hit() &&
+                           hit.object == SceneObject::kFrame && at1.clearance < bevel &&
+                           double(hit.distance) < double(entry) + bevel;
+    if (in_groove) continue;
+    if (!through || batch.lens_of[i] != 0 || !forward) {
       batch.lens_of[i] = 3;
       continue;
     }
-    const float entry = shift + (p1 - batch.in.point(k)).norm();
-    const SceneHit& hit = batch.primary.hits[i];
     if (hit.hit() && hit.distance < entry) continue;
     batch.lens_of[i] = std::uint8_t(lens + 1);
     Regular r;
@@ -414,7 +421,8 @@ void TileRenderer::TraceLens(std::size_t lens, Batch& batch, std::vector<CameraS
     TraceFaceBatch(solid.lens(), LensFace::kFront, index, batch.back_in.const_view(), m, face);
   }
   // A ray that passes the contour before it meets the front has met the wall, unless the back
-  // surface bends into its way. On its way there it may meet the frame.
+  // surface bends into its way. On its way there, or to the front near the rim, it may meet the
+  // frame.
   const bool ground = head_.options.finish.edge == EdgeFinish::kGround &&
                       solid.back_bulges_inward() && look.tint.clear() &&
                       follower_.effects(lens)[Effect::kRings];
@@ -422,17 +430,23 @@ void TileRenderer::TraceLens(std::size_t lens, Batch& batch, std::vector<CameraS
   batch.back_way.clear();
   for (std::size_t j = 0; j < m; ++j) {
     const Eigen::Vector3f p = batch.back_hit.point(j);
+    const Eigen::Vector3f& from = batch.regular[batch.back_of[j]].second_point;
+    const Eigen::Vector3f along = batch.back_in.vector(j);
     const ContourIndex::Place at = contour.Locate(double(p.x()), double(p.y()));
-    if (batch.back_status[j] == std::uint8_t(RayStatus::kOk) && at.clearance >= rim) {
+    const bool leaves = batch.back_status[j] == std::uint8_t(RayStatus::kOk);
+    if (leaves && at.clearance >= rim) {
       batch.back_way.push_back(BackWay::kOut);
+      continue;
+    }
+    if (leaves && at.inside) {
+      batch.back_way.push_back(BackWay::kOutByRim);
+      batch.rim.Add(to_head(from), head_from_lens * along, (p - from).norm());
       continue;
     }
     batch.back_way.push_back(BackWay::kExact);
     if (!ground || at.inside || batch.back_status[j] == std::uint8_t(RayStatus::kMissesSurface)) {
       continue;
     }
-    const Eigen::Vector3f& from = batch.regular[batch.back_of[j]].second_point;
-    const Eigen::Vector3f along = batch.back_in.vector(j);
     const auto crossing =
         contour.FirstCrossing(from.head<2>().cast<double>(), along.head<2>().cast<double>(), 0,
                               double((p - from).norm()));
@@ -452,15 +466,17 @@ void TileRenderer::TraceLens(std::size_t lens, Batch& batch, std::vector<CameraS
     const Eigen::Vector3f p = batch.back_hit.point(j);
     CameraSample& sample = samples[r.sample];
     const BackWay way = batch.back_way[j];
-    if (way == BackWay::kWall) {
+    if (way == BackWay::kWall || way == BackWay::kOutByRim) {
       const std::size_t at = rim_next++;
       if (const SceneHit& hit = batch.rim.hits[at]; hit.hit()) {
         const Eigen::Vector3f& direction = batch.rim.directions[at];
         const Eigen::Vector3f point = batch.rim.origins[at] + hit.distance * direction;
         sample.inserted += weight.cwiseProduct(follower_.Frame(hit, point, direction));
-      } else {
-        sample.inserted += weight.cwiseProduct(wall);
+        continue;
       }
+    }
+    if (way == BackWay::kWall) {
+      sample.inserted += weight.cwiseProduct(wall);
     } else if (way == BackWay::kExact) {
       const double most = double(weight.maxCoeff());
       if (most < head_.options.least_weight || !follower_.effects(lens)[Effect::kRings]) continue;

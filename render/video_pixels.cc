@@ -20,8 +20,10 @@ struct Touched {
       const std::uint8_t *p = a.at(0, y), *q = b.at(0, y);
       if (std::memcmp(p, q, 3 * std::size_t(width)) == 0) continue;
       row_of[std::size_t(y)] = int(pixels.size() / std::size_t(width));
+      pixels.resize(pixels.size() + std::size_t(width));
+      std::uint8_t* differs = pixels.data() + pixels.size() - width;
       for (int x = 0; x < width; ++x, p += 3, q += 3) {
-        pixels.push_back(p[0] != q[0] || p[1] != q[1] || p[2] != q[2]);
+        differs[x] = std::uint8_t((p[0] ^ q[0]) | (p[1] ^ q[1]) | (p[2] ^ q[2]));
       }
     }
   }
@@ -56,8 +58,12 @@ void RestorePlane(const Touched& touched, int log2_w, int log2_h, int sample_byt
       std::memcpy(to, from, std::size_t(columns) * std::size_t(sample_bytes));
       continue;
     }
-    for (int c = 0; c < columns; ++c) {
-      if (row[c] == 0) std::memcpy(to + c * sample_bytes, from + c * sample_bytes, sample_bytes);
+    for (int c = 0; c < columns;) {  // runs of one kind
+      const int first = c;
+      while (c < columns && (row[c] == 0) == (row[first] == 0)) ++c;
+      if (row[first] != 0) continue;
+      std::memcpy(to + first * sample_bytes, from + first * sample_bytes,
+                  std::size_t(c - first) * std::size_t(sample_bytes));
     }
   }
 }

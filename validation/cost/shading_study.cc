@@ -431,8 +431,8 @@ Result<CostStudy> ShadingStudy(const WornScene& worn, const CostOptions& options
       for (std::size_t i = 0; i < relit.size(); ++i) {
         Light l;
         for (std::size_t j = 0; j < terms; ++j) {
-          l.with += transfer.with[i][j] * light.harmonics[j];
-          l.without += transfer.without[i][j] * light.harmonics[j];
+          l.with += transfer.with[i][j] * light.harmonics[j].head<3>();
+          l.without += transfer.without[i][j] * light.harmonics[j].head<3>();
         }
         relit[i] = l.Ratio();
       }
