@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "tracking/face_landmarker.h"
 
+#include <tbb/parallel_invoke.h>
+
 #include <cmath>
 
 #include "tracking/canonical_mesh.h"
@@ -16,13 +18,13 @@ constexpr double kRenewal = 0.5;  // of the kept change, by each new one
 }  // namespace
 
 struct FaceLandmarker::Network {
-  OnnxNetwork onnx;
+  OnnxNetwork onnx, mirrored;  // the same twice: a picture and its mirror image at once
   std::vector<int> mirror;
   std::vector<Eigen::Vector3d> change;  // by the mirror, pixels of the input; empty: not known
 
   // Points in pixels of the input.
-  FaceLandmarks Run(const cv::Mat& input) {
-    const std::vector<cv::Mat> out = onnx.Run(input, 1.0 / 255, 0);
+  static FaceLandmarks Run(OnnxNetwork& network, const cv::Mat& input) {
+    const std::vector<cv::Mat> out = network.Run(input, 1.0 / 255, 0);
     const float* v = out[0].ptr<float>();
     FaceLandmarks found;
     found.points.reserve(kLandmarks);
@@ -37,8 +39,11 @@ FaceLandmarker::FaceLandmarker(FaceLandmarker&&) noexcept = default;
 FaceLandmarker::~FaceLandmarker() = default;
 
 Result<FaceLandmarker> FaceLandmarker::Load(const std::string& onnx_path, std::vector<int> mirror) {
-  LG_ASSIGN(OnnxNetwork onnx, OnnxNetwork::Load(onnx_path, kInputPixels, {3 * kLandmarks, 1}));
-  return FaceLandmarker(std::make_unique<Network>(Network{std::move(onnx), std::move(mirror), {}}));
+  const auto load = [&] { return OnnxNetwork::Load(onnx_path, kInputPixels, {3 * kLandmarks, 1}); };
+  LG_ASSIGN(OnnxNetwork onnx, load());
+  LG_ASSIGN(OnnxNetwork mirrored, load());
+  return FaceLandmarker(std::make_unique<Network>(
+      Network{std::move(onnx), std::move(mirrored), std::move(mirror), {}}));
 }
 
 namespace {
@@ -54,17 +59,20 @@ void MoveToImage(const FaceRegion& region, FaceLandmarks& landmarks) {
 
 FaceLandmarks FaceLandmarker::Find(const ImageRgb8& frame, const FaceRegion& region) {
   const ImageRgb8 input = SampleRegion(frame, region, kInputPixels);
-  FaceLandmarks found = network_->Run(MatOf(input));
+  FaceLandmarks found = Network::Run(network_->onnx, MatOf(input));
   MoveToImage(region, found);
   return found;
 }
 
 FaceLandmarks FaceLandmarker::FindSymmetric(const ImageRgb8& frame, const FaceRegion& region) {
   const ImageRgb8 input = SampleRegion(frame, region, kInputPixels);
-  FaceLandmarks found = network_->Run(MatOf(input));
-  cv::Mat flipped;
-  cv::flip(MatOf(input), flipped, 1);
-  const FaceLandmarks mirrored = network_->Run(flipped);
+  FaceLandmarks found, mirrored;
+  tbb::parallel_invoke([&] { found = Network::Run(network_->onnx, MatOf(input)); },
+                       [&] {
+                         cv::Mat flipped;
+                         cv::flip(MatOf(input), flipped, 1);
+                         mirrored = Network::Run(network_->mirrored, flipped);
+                       });
   std::vector<Eigen::Vector3d>& change = network_->change;
   const bool first = change.empty();
   change.resize(found.points.size(), Eigen::Vector3d::Zero());
@@ -82,7 +90,7 @@ FaceLandmarks FaceLandmarker::FindSymmetric(const ImageRgb8& frame, const FaceRe
 
 FaceLandmarks FaceLandmarker::FindCorrected(const ImageRgb8& frame, const FaceRegion& region) {
   const ImageRgb8 input = SampleRegion(frame, region, kInputPixels);
-  FaceLandmarks found = network_->Run(MatOf(input));
+  FaceLandmarks found = Network::Run(network_->onnx, MatOf(input));
   for (std::size_t i = 0; i < network_->change.size(); ++i) found.points[i] += network_->change[i];
   MoveToImage(region, found);
   return found;
