@@ -59,9 +59,7 @@ RayFollower::FramePoint RayFollower::FrameAt(const SceneHit& hit) const {
   const float w[3] = {1 - hit.u - hit.v, hit.u, hit.v};
   FramePoint at;
   at.normal.setZero();
-  for (int k = 0; k < 3; ++k) {
-    at.normal += w[k] * frame.mesh.normals[std::size_t(t[k])].cast<float>();
-  }
+  for (int k = 0; k < 3; ++k) at.normal += w[k] * frame.normals[std::size_t(t[k])];
   at.normal.normalize();
   at.diffuse = material.diffuse;
   at.specular = material.specular;
@@ -88,17 +86,13 @@ RayFollower::FramePoint RayFollower::FrameAt(const SceneHit& hit) const {
 
 std::vector<Eigen::Vector3f> RayFollower::FrameRadiance() const {
   const FrameSurface& frame = head_.frame;
-  std::vector<Eigen::Vector3f> irradiance;
-  for (std::size_t i = 0; i < frame.mesh.positions.size(); ++i) {
-    irradiance.push_back(head_.frame_light.At(light_, picture_.face_mean(),
-                                              Eigen::Vector3i::Constant(int(i)), {1, 0, 0}));
-  }
   std::vector<Eigen::Vector3f> radiance;
   for (std::size_t t = 0; t < frame.mesh.triangles.size(); ++t) {
     const FrameMaterial& material = frame.materials[frame.material_of[t]];
     for (int k = 0; k < 3; ++k) {
-      radiance.push_back(float(1 / kPi) * material.diffuse.cwiseProduct(
-                                              irradiance[std::size_t(frame.mesh.triangles[t][k])]));
+      radiance.push_back(float(1 / kPi) *
+                         material.diffuse.cwiseProduct(
+                             frame_irradiance_[std::size_t(frame.mesh.triangles[t][k])]));
     }
   }
   return radiance;
@@ -171,8 +165,9 @@ Eigen::Vector3f RayFollower::Frame(const SceneHit& hit, const Eigen::Vector3f& p
   const std::uint16_t part = frame.material_of[hit.triangle];
   const FramePoint at = FrameAt(hit);
   const Eigen::Vector3i& t = frame.mesh.triangles[hit.triangle];
-  const Eigen::Vector3f irradiance =
-      head_.frame_light.At(light_, picture_.face_mean(), t, {1 - hit.u - hit.v, hit.u, hit.v});
+  const float w[3] = {1 - hit.u - hit.v, hit.u, hit.v};
+  Eigen::Vector3f irradiance = Eigen::Vector3f::Zero();
+  for (int k = 0; k < 3; ++k) irradiance += w[k] * frame_irradiance_[std::size_t(t[k])];
   Eigen::Vector3f colour = float(1 / kPi) * at.diffuse.cwiseProduct(irradiance);
   if (effects_.rest[Effect::kGloss]) {
     if (const auto ray = Gloss(at, point, direction)) {

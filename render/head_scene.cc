@@ -43,6 +43,7 @@ FrameSurface JoinParts(const Eyewear& eyewear, const Environment& environment) {
     }
     Append(out.mesh, mesh);
   }
+  for (const Eigen::Vector3d& n : out.mesh.normals) out.normals.push_back(n.cast<float>());
   double ear_z = 0.5 * (eyewear.frame.ear_point_right.z() + eyewear.frame.ear_point_left.z());
   if (ear_z >= 0) ear_z = -0.7 * eyewear.frame.temple_length_mm;
   out.fade_start_z = kFadeStart * ear_z;

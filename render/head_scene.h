@@ -20,6 +20,7 @@ namespace lorgnette {
 // The frame's parts as one mesh, demo lenses left out.
 struct FrameSurface {
   TriangleMesh mesh;                       // head space, with normals and uvs
+  std::vector<Eigen::Vector3f> normals;    // the mesh's, as every ray reads them
   std::vector<std::uint16_t> material_of;  // one a triangle
   std::vector<FrameMaterial> materials;    // one a part
   std::vector<bool> fades;                 // one a part: a temple

@@ -42,12 +42,6 @@ InputPicture::InputPicture(const ImageRgb8& display, const PixelBox& ready)
                     });
 }
 
-Eigen::Vector3f InputPicture::Pixel(int x, int y) const {
-  if (IsReady(x, y, x + 1, y + 1)) return Eigen::Map<const Eigen::Vector3f>(Ready(x, y));
-  const std::uint8_t* codes = display_->at(x, y);
-  return {LinearFromCode(codes[0]), LinearFromCode(codes[1]), LinearFromCode(codes[2])};
-}
-
 Eigen::Vector3f InputPicture::Brightest() const {
   if (display_ == nullptr) {
     Eigen::Vector3f most = Eigen::Vector3f::Zero();

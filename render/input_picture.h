@@ -8,6 +8,7 @@
 #include <memory>
 
 #include "base/image.h"
+#include "render/color.h"
 
 namespace lorgnette {
 
@@ -44,7 +45,11 @@ class InputPicture {
   }
   std::size_t stride() const { return stride_; }
   // Any pixel inside the picture.
-  Eigen::Vector3f Pixel(int x, int y) const;
+  Eigen::Vector3f Pixel(int x, int y) const {
+    if (IsReady(x, y, x + 1, y + 1)) return Eigen::Map<const Eigen::Vector3f>(Ready(x, y));
+    const std::uint8_t* codes = display_->at(x, y);
+    return {LinearFromCode(codes[0]), LinearFromCode(codes[1]), LinearFromCode(codes[2])};
+  }
   // The greatest value of each channel.
   Eigen::Vector3f Brightest() const;
 

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "render/lighting.h"
 
+#include <tbb/blocked_range.h>
 #include <tbb/parallel_for.h>
 
 #include <algorithm>
@@ -78,20 +79,22 @@ BakedIrradiance BakedIrradiance::Bake(const EmbreeScene& scene,
   return baked;
 }
 
-Eigen::Vector3f BakedIrradiance::At(const HeadLight& light, const Eigen::Vector3f& head_radiance,
-                                    const Eigen::Vector3i& points,
-                                    const Eigen::Vector3f& weights) const {
-  Harmonics transfer{};
-  float head_share = 0;
-  for (int k = 0; k < 3; ++k) {
-    const std::size_t i = std::size_t(points[k]);
-    head_share += weights[k] * head_share_[i];
-    for (std::size_t j = 0; j < kHarmonics; ++j) transfer[j] += weights[k] * transfer_[i][j];
-  }
-  // Four floats a term: one load and one multiplication for the three channels.
-  Eigen::Vector4f sum = Eigen::Vector4f::Zero();
-  for (std::size_t j = 0; j < kHarmonics; ++j) sum += transfer[j] * light.harmonics[j];
-  return (sum.head<3>() + float(kPi) * head_share * head_radiance).cwiseMax(0.0f);
+std::vector<Eigen::Vector3f> BakedIrradiance::Relight(const HeadLight& light,
+                                                      const Eigen::Vector3f& head_radiance) const {
+  std::vector<Eigen::Vector3f> irradiance(transfer_.size());
+  const Eigen::Vector3f from_head = float(kPi) * head_radiance;
+  constexpr std::size_t kPointsATask = 2048;
+  tbb::parallel_for(tbb::blocked_range<std::size_t>(0, transfer_.size(), kPointsATask),
+                    [&](const tbb::blocked_range<std::size_t>& range) {
+                      for (std::size_t i = range.begin(); i < range.end(); ++i) {
+                        Eigen::Vector4f sum = Eigen::Vector4f::Zero();
+                        for (std::size_t j = 0; j < kHarmonics; ++j) {
+                          sum += transfer_[i][j] * light.harmonics[j];
+                        }
+                        irradiance[i] = (sum.head<3>() + head_share_[i] * from_head).cwiseMax(0.0f);
+                      }
+                    });
+  return irradiance;
 }
 
 }  // namespace lorgnette

@@ -21,7 +21,8 @@ namespace lorgnette {
 // Radiance of every baked direction times its solid angle, and the same light in harmonics.
 struct HeadLight {
   std::vector<Eigen::Vector3f> cells;
-  std::array<Eigen::Vector4f, kHarmonics> harmonics;  // the fourth is 0
+  // Four floats a term, the last 0: one load and one multiplication for the three channels.
+  std::array<Eigen::Vector4f, kHarmonics> harmonics;
 };
 //   directions  SphereDirections(n), in head space;  blurred  ForCells(environment, n)
 HeadLight LightAt(const std::vector<Eigen::Vector3f>& directions, const BlurredEnvironment& blurred,
@@ -38,10 +39,9 @@ class BakedIrradiance {
  public:
   static BakedIrradiance Bake(const EmbreeScene& scene, const std::vector<SurfacePoint>& points,
                               int directions);
-  // W/m^2 in units of the environment, between three of the points by weights that sum to 1, plus
-  // pi * head_radiance from the head's part.
-  Eigen::Vector3f At(const HeadLight& light, const Eigen::Vector3f& head_radiance,
-                     const Eigen::Vector3i& points, const Eigen::Vector3f& weights) const;
+  // W/m^2 in units of the environment: one a point, plus pi * head_radiance from the head's part.
+  std::vector<Eigen::Vector3f> Relight(const HeadLight& light,
+                                       const Eigen::Vector3f& head_radiance) const;
 
  private:
   std::vector<Harmonics> transfer_;

@@ -81,13 +81,14 @@ RayFollower::RayFollower(const HeadScene& head, const PictureView& picture, cons
     minification_.push_back(Minification(lens, camera_from_head, picture.background_depth()));
   }
   frame_z_ = head.frame.frame_from_head.matrix().row(2).cast<float>();
-  light_ =
+  const HeadLight light =
       LightAt(head.directions, head.cells, world_from_head_, float(head.options.environment_scale));
   if (head.baked_shadow && effects.rest[Effect::kShadow])
-    ratios_ = head.baked_shadow->Relight(light_);
+    ratios_ = head.baked_shadow->Relight(light);
+  frame_irradiance_ = head.frame_light.Relight(light, picture_.face_mean());
   lenses_overlap_ = LensesOverlap(head, camera, camera_from_head);
   if (head.gather_lattice && effects.rest[Effect::kShadow]) {
-    GatherScene gather{head.scene, head.face, head.directions, light_, picture_.vertex_colours(),
+    GatherScene gather{head.scene, head.face, head.directions, light, picture_.vertex_colours(),
                        {}};
     gather.frame_radiance = FrameRadiance();
     if (effects.Any(Effect::kLensLight)) {

@@ -148,8 +148,8 @@ class RayFollower {
   bool lenses_overlap_ = false;
   std::vector<float> minification_;  // one a lens
   const PictureView& picture_;
-  std::vector<Eigen::Vector3f> ratios_;  // one a baked point
-  HeadLight light_;
+  std::vector<Eigen::Vector3f> ratios_;            // one a baked point
+  std::vector<Eigen::Vector3f> frame_irradiance_;  // one a vertex
   std::optional<GatheredShadow> gathered_;
 };
 

@@ -32,70 +32,61 @@ class Marker {
     return {float(camera_.fx) * p.x() / p.z() + float(camera_.cx),
             float(camera_.fy) * p.y() / p.z() + float(camera_.cy)};
   }
-  struct Box {
-    float x0 = 1e30f, y0 = 1e30f, x1 = -1e30f, y1 = -1e30f;
-    bool everywhere = false;
-    void Add(const Eigen::Vector2f& p) {
-      if (std::isnan(p.x())) {
-        everywhere = true;
-        return;
-      }
-      x0 = std::min(x0, p.x());
-      x1 = std::max(x1, p.x());
-      y0 = std::min(y0, p.y());
-      y1 = std::max(y1, p.y());
+  // The tiles, from first to last, that a point with its margin reaches; one beyond the picture's
+  // stands for all that lie beyond.
+  struct Reach {
+    int c0 = 1 << 20, r0 = 1 << 20, c1 = -1, r1 = -1;
+    void Add(const Reach& other) {
+      c0 = std::min(c0, other.c0);
+      r0 = std::min(r0, other.r0);
+      c1 = std::max(c1, other.c1);
+      r1 = std::max(r1, other.r1);
     }
   };
+  Reach ReachOf(const Eigen::Vector3f& head_point) const {
+    const Eigen::Vector2f p = Project(head_point);
+    if (std::isnan(p.x())) return {0, 0, mask.columns - 1, mask.rows - 1};
+    const auto tile = [](float v, int count) {
+      return int(std::clamp(std::floor(v / kTileSide), -1.0f, float(count)));
+    };
+    return {tile(p.x() - kMargin_px, mask.columns), tile(p.y() - kMargin_px, mask.rows),
+            tile(p.x() + kMargin_px, mask.columns), tile(p.y() + kMargin_px, mask.rows)};
+  }
   template <typename Points>
-  std::vector<Eigen::Vector2f> ProjectAll(const Points& points) const {
-    std::vector<Eigen::Vector2f> projected(points.size());
+  std::vector<Reach> ReachOfAll(const Points& points) const {
+    std::vector<Reach> reach(points.size());
     tbb::parallel_for(tbb::blocked_range<std::size_t>(0, points.size(), 1024),
                       [&](const tbb::blocked_range<std::size_t>& range) {
                         for (std::size_t i = range.begin(); i < range.end(); ++i) {
-                          projected[i] = Project(points[i].template cast<float>());
+                          reach[i] = ReachOf(points[i].template cast<float>());
                         }
                       });
-    return projected;
+    return reach;
   }
-  void Mark(const Box& box, std::uint8_t bits, std::vector<std::uint8_t>& content) const {
-    int c0 = 0, r0 = 0, c1 = mask.columns - 1, r1 = mask.rows - 1;
-    if (!box.everywhere) {
-      if (box.x1 + kMargin_px < 0 || box.y1 + kMargin_px < 0 ||
-          box.x0 - kMargin_px > float(camera_.width) ||
-          box.y0 - kMargin_px > float(camera_.height)) {
-        return;
-      }
-      const auto tile = [](float v, int last) {
-        return std::clamp(int(std::floor(v / kTileSide)), 0, last);
-      };
-      c0 = tile(box.x0 - kMargin_px, c1);
-      c1 = tile(box.x1 + kMargin_px, c1);
-      r0 = tile(box.y0 - kMargin_px, r1);
-      r1 = tile(box.y1 + kMargin_px, r1);
-    }
-    for (int row = r0; row <= r1; ++row) {
-      for (int column = c0; column <= c1; ++column) {
+  void Mark(const Reach& reach, std::uint8_t bits, std::vector<std::uint8_t>& content) const {
+    for (int row = std::max(reach.r0, 0); row <= std::min(reach.r1, mask.rows - 1); ++row) {
+      for (int column = std::max(reach.c0, 0); column <= std::min(reach.c1, mask.columns - 1);
+           ++column) {
         content[std::size_t(row) * std::size_t(mask.columns) + std::size_t(column)] |= bits;
       }
     }
   }
 
-  // The boxes of those triangles of which `takes` is true, by the projections of their vertices.
+  // What lies between the corners of those triangles of which `takes` is true.
   template <typename Takes>
-  void MarkTriangles(const std::vector<Eigen::Vector3i>& triangles,
-                     const std::vector<Eigen::Vector2f>& projected, std::uint8_t bits,
-                     Takes&& takes) {
+  void MarkTriangles(const std::vector<Eigen::Vector3i>& triangles, const std::vector<Reach>& reach,
+                     std::uint8_t bits, Takes&& takes) {
     std::mutex mutex;
     tbb::parallel_for(tbb::blocked_range<std::size_t>(0, triangles.size(), 8192),
                       [&](const tbb::blocked_range<std::size_t>& range) {
                         std::vector<std::uint8_t> content(mask.content.size(), 0);
                         for (std::size_t t = range.begin(); t < range.end(); ++t) {
                           if (!takes(t)) continue;
-                          Box box;
+                          Reach all;
                           for (int k = 0; k < 3; ++k) {
-                            box.Add(projected[std::size_t(triangles[t][k])]);
+                            all.Add(reach[std::size_t(triangles[t][k])]);
                           }
-                          Mark(box, bits, content);
+                          Mark(all, bits, content);
                         }
                         const std::lock_guard<std::mutex> lock(mutex);
                         for (std::size_t i = 0; i < content.size(); ++i) {
@@ -134,26 +125,24 @@ PixelBox TileMask::Bounds() const {
 TileMask MarkTiles(const HeadScene& head, const Camera& camera,
                    const Eigen::Isometry3d& camera_from_head) {
   Marker marker(camera, camera_from_head);
-  const std::vector<Eigen::Vector2f> frame = marker.ProjectAll(head.frame.mesh.positions);
-  marker.MarkTriangles(head.frame.mesh.triangles, frame, kTileFrame,
-                       [](std::size_t) { return true; });
+  marker.MarkTriangles(head.frame.mesh.triangles, marker.ReachOfAll(head.frame.mesh.positions),
+                       kTileFrame, [](std::size_t) { return true; });
   for (std::size_t i = 0; i < head.lenses.size(); ++i) {
     const LensSolid& lens = head.lenses[i];
-    Marker::Box box;
+    Marker::Reach reach;
     for (int corner = 0; corner < 8; ++corner) {
       const Eigen::Vector3d p(corner & 1 ? lens.low().x() : lens.high().x(),
                               corner & 2 ? lens.low().y() : lens.high().y(),
                               corner & 4 ? lens.low().z() : lens.high().z());
-      box.Add(marker.Project((lens.head_from_lens() * p).cast<float>()));
+      reach.Add(marker.ReachOf((lens.head_from_lens() * p).cast<float>()));
     }
-    marker.Mark(box, i == 0 ? kTileRightLens : kTileLeftLens, marker.mask.content);
+    marker.Mark(reach, i == 0 ? kTileRightLens : kTileLeftLens, marker.mask.content);
   }
   const bool everywhere = head.paper_shadow.has_value() || head.gather_lattice.has_value();
   if (!everywhere && !head.baked_shadow) return std::move(marker.mask);
-  const std::vector<Eigen::Vector2f> face = marker.ProjectAll(head.face_vertices);
-  marker.MarkTriangles(head.face_triangles, face, kTileShadow, [&](std::size_t t) {
-    return everywhere || head.baked_shadow->touched(std::uint32_t(t));
-  });
+  marker.MarkTriangles(
+      head.face_triangles, marker.ReachOfAll(head.face_vertices), kTileShadow,
+      [&](std::size_t t) { return everywhere || head.baked_shadow->touched(std::uint32_t(t)); });
   return std::move(marker.mask);
 }
 

@@ -225,14 +225,11 @@ TEST(BakedIrradiance, IsPiTimesTheLightInTheOpenAndHalfUnderAWall) {
   const auto light = LightAt(SphereDirections(1024),
                              BlurredEnvironment::ForCells(Environment::Constant({1, 1, 1}), 1024),
                              Eigen::Matrix3f::Identity(), 1);
-  const auto irradiance = [&](const Eigen::Vector3f& weights) {
-    return double(baked.At(light, Eigen::Vector3f::Zero(), {0, 1, 2}, weights).x());
-  };
+  const auto irradiance = baked.Relight(light, Eigen::Vector3f::Zero());
   // 1024 cells over the sphere: a straight boundary is off by about a cell's width, 0.1 rad / 20.
-  EXPECT_NEAR(irradiance({1, 0, 0}) / kPi, 0.5, 0.02);
-  EXPECT_NEAR(irradiance({0, 1, 0}) / kPi, 0.5, 0.02);
-  EXPECT_NEAR(irradiance({0, 0, 1}) / kPi, 1.0, 0.02);
-  EXPECT_NEAR(irradiance({0.25f, 0.25f, 0.5f}) / kPi, 0.75, 0.02);
+  EXPECT_NEAR(irradiance[0].x() / kPi, 0.5, 0.02);
+  EXPECT_NEAR(irradiance[1].x() / kPi, 0.5, 0.02);
+  EXPECT_NEAR(irradiance[2].x() / kPi, 1.0, 0.02);
 }
 
 }  // namespace
