@@ -7,6 +7,7 @@
 #include <limits>
 
 #include "optics/lens_kernel.h"
+#include "optics/trace.h"
 #include "render/embree_scene.h"
 #include "render/ray_bundle.h"
 
@@ -278,7 +279,14 @@ void TileRenderer::Share(std::size_t lens, float enter, float leave,
 void TileRenderer::TraceLens(std::size_t lens, Batch& batch, std::vector<CameraSample>& samples,
                              std::vector<PixelState>& pixels) const {
   const LensSolid& solid = head_.lenses[lens];
-  const double index = follower_.index(lens);
+  // Without refraction rays pass as through air, and mirror as glass does that they enter so.
+  const bool refracts = follower_.effects(lens)[Effect::kRefraction];
+  const double index = follower_.index(lens), bend = refracts ? index : 1;
+  const auto mirrored_share = [&](const RayColumns& rays, const RayColumns& normals,
+                                  std::size_t k) {
+    const double cosine = std::abs(double(rays.vector(k).dot(normals.vector(k))));
+    return float(FresnelReflectance(std::min(cosine, 1.0), 1 / index));
+  };
   const Eigen::Matrix3f lens_from_head = solid.lens_from_head().linear().cast<float>();
   const Eigen::Matrix3f head_from_lens = solid.head_from_lens().linear().cast<float>();
   const Eigen::Vector3f lens_in_head = solid.head_from_lens().translation().cast<float>();
@@ -320,7 +328,11 @@ void TileRenderer::TraceLens(std::size_t lens, Batch& batch, std::vector<CameraS
   out.second = &second;
   out.first_reflectance = batch.enter.data();
   out.second_reflectance = batch.leave.data();
-  TraceLensBatch(solid.lens(), index, batch.in.const_view(), n, out);
+  TraceLensBatch(solid.lens(), bend, batch.in.const_view(), n, out);
+  for (std::size_t k = 0; k < n && !refracts; ++k) {
+    batch.enter[k] = mirrored_share(batch.in, batch.first, k);
+    batch.leave[k] = mirrored_share(batch.in, batch.second, k);
+  }
 
   // Sort out: straight through both surfaces, certainly beside the glass, or neither.
   const ContourIndex& contour = solid.contour();
@@ -418,7 +430,10 @@ void TileRenderer::TraceLens(std::size_t lens, Batch& batch, std::vector<CameraS
   face.refracted = &back_out;
   face.reflectance = batch.back_reflectance.data();
   if (m > 0) {
-    TraceFaceBatch(solid.lens(), LensFace::kFront, index, batch.back_in.const_view(), m, face);
+    TraceFaceBatch(solid.lens(), LensFace::kFront, bend, batch.back_in.const_view(), m, face);
+  }
+  for (std::size_t j = 0; j < m && !refracts; ++j) {
+    batch.back_reflectance[j] = mirrored_share(batch.back_in, batch.back_hit, j);
   }
   // A ray that passes the contour before it meets the front has met the wall, unless the back
   // surface bends into its way. On its way there, or to the front near the rim, it may meet the
@@ -561,12 +576,10 @@ void TileRenderer::Trace(std::vector<CameraSample>& samples, std::uint8_t conten
     if (!(content & lens_bits[lens])) continue;
     const EffectSet& on = follower_.effects(lens);
     const bool ghosts = on[Effect::kBounces] && follower_.follows_ghosts(lens);
-    if (on[Effect::kRefraction] && !ghosts &&
-        (content & (kTileRightLens | kTileLeftLens)) == lens_bits[lens]) {
+    if (!ghosts && (content & (kTileRightLens | kTileLeftLens)) == lens_bits[lens]) {
       TraceLens(lens, batch, samples, pixels);
     } else {
-      // Both lenses in one tile, rays that pass unbent, ghosts of mirrors: seldom, and not worth a
-      // batch.
+      // Both lenses in one tile, ghosts of mirrors: seldom, and not worth a batch.
       std::fill(batch.lens_of.begin(), batch.lens_of.end(), std::uint8_t(3));
     }
   }
