@@ -15,6 +15,9 @@ die() {
   exit 1
 }
 
+# need COMMAND [PACKAGE]: stops where a command is missing that README's two do not need.
+need() { command -v "$1" >/dev/null || die "$1 is not installed (apt-get install ${2:-$1})"; }
+
 # step NAME WHAT COMMAND...: runs a command quietly; on failure shows the end of its output and
 # stops. NAME is the log's name, WHAT reads after "could not".
 step() {
