@@ -60,7 +60,7 @@ class Anchorer {
   const Eigen::Isometry3d& Landmark(std::size_t f) const { return in_.landmark_poses[f]; }
   // A pixel of the frame's crop, in pixels of the frame.
   double CropPixel(std::size_t f) const {
-    return in_.frames[f].crop.region.side / in_.frames[f].crop.grey.width;
+    return in_.frames[f].crop.region.side / in_.frames[f].crop.width;
   }
   bool Seen(std::size_t f) const { return in_.frames[f].landmarks.has_value(); }
   // The views nearest to a frame, nearest first; `from` none.
@@ -114,13 +114,13 @@ Eigen::Isometry3d Anchorer::Guess(std::size_t f, std::size_t view) const {
 }
 
 std::vector<Sighting> Anchorer::Match(std::size_t f, Eigen::Isometry3d* pose) const {
-  const TexturePyramid texture(in_.frames[f].crop.grey);
+  const FaceCrop crop = in_.frames[f].crop.Load();
+  const TexturePyramid texture(crop.grey);
   std::vector<Sighting> all;
   for (const std::size_t v : NearestViews(f)) {
     const bool first = all.empty();
-    const auto match =
-        MatchAnchors(views_[v], in_.frames[f].crop, texture, camera_, first ? Guess(f, v) : *pose,
-                     first ? PoseGuess::kRough : PoseGuess::kGood);
+    const auto match = MatchAnchors(views_[v], crop, texture, camera_, first ? Guess(f, v) : *pose,
+                                    first ? PoseGuess::kRough : PoseGuess::kGood);
     if (!match) continue;
     if (first) *pose = match->pose.camera_from_head;
     const double off = AngleBetween(match->pose.camera_from_head, views_[v].camera_from_head);
@@ -147,7 +147,7 @@ void Anchorer::AddView(std::size_t f, const Eigen::Isometry3d& pose) {
 }
 
 AnchorView Anchorer::ViewOf(std::size_t f, const Eigen::Isometry3d& pose) const {
-  const FaceCrop& crop = in_.frames[f].crop;
+  const FaceCrop crop = in_.frames[f].crop.Load();
   return MakeAnchorView(f, crop, TexturePyramid(crop.grey), camera_, pose, in_.face,
                         in_.rigid_weight);
 }
@@ -307,7 +307,7 @@ std::vector<std::optional<PoseFit>> Anchorer::Chain(
   Eigen::Isometry3d pose = poses[before]->camera_from_head;
   AnchorView view = ViewOf(before, pose);
   for (std::size_t f = first; f != last; f += std::size_t(step)) {
-    const FaceCrop& crop = in_.frames[f].crop;
+    const FaceCrop crop = in_.frames[f].crop.Load();
     const TexturePyramid texture(crop.grey);
     for (const bool renewed : {false, true}) {
       if (renewed) {

@@ -253,8 +253,10 @@ ClipFit FitClip(const std::vector<FollowedFrame>& frames, const CanonicalMesh& c
   std::vector<IrisReading> irises(frames.size());
   tbb::parallel_for(std::size_t(0), frames.size(), [&](std::size_t f) {
     if (landmarks[f] == nullptr) return;
-    irises[f].right = FindIris(frames[f].right_eye, track.camera, poses[f], pupils.right, pd_mm);
-    irises[f].left = FindIris(frames[f].left_eye, track.camera, poses[f], pupils.left, pd_mm);
+    irises[f].right =
+        FindIris(frames[f].right_eye.Load(), track.camera, poses[f], pupils.right, pd_mm);
+    irises[f].left =
+        FindIris(frames[f].left_eye.Load(), track.camera, poses[f], pupils.left, pd_mm);
   });
   if (const auto seen = SummariseIrises(irises, track.camera, poses, pupils)) {
     track.iris_pd_mm = seen->pd_mm;

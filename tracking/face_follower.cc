@@ -118,11 +118,11 @@ FollowedFrame FaceFollower::Next(const ImageRgb8& frame, double time_s) {
                                  : landmarker_.FindCorrected(frame, *region_);
     if (found.face_probability < kMinFaceProbability || !Usable(found.Region())) continue;
     region_ = found.Region();
-    out.crop.region = *region_;
-    out.crop.region.side *= kCropSide;
-    out.crop.grey = SampleGrey(frame, out.crop.region, kCropPixels);
-    out.right_eye = EyeCrop(frame, found, kRightEye, region_->angle);
-    out.left_eye = EyeCrop(frame, found, kLeftEye, region_->angle);
+    FaceRegion around = *region_;
+    around.side *= kCropSide;
+    out.crop = {{around, SampleGrey(frame, around, kCropPixels)}, crops_};
+    out.right_eye = {EyeCrop(frame, found, kRightEye, region_->angle), crops_};
+    out.left_eye = {EyeCrop(frame, found, kLeftEye, region_->angle), crops_};
     portraits_.Offer(number, frame, found, canonical_);
     out.landmarks = std::move(found);
     return out;

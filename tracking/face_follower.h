@@ -3,6 +3,7 @@
 // before; a cut in the film or a lost face leads to a new detection in the same frame.
 #pragma once
 
+#include <memory>
 #include <optional>
 #include <string>
 #include <vector>
@@ -10,25 +11,20 @@
 #include "base/image.h"
 #include "base/result.h"
 #include "tracking/canonical_mesh.h"
+#include "tracking/crop_store.h"
 #include "tracking/face_detector.h"
 #include "tracking/face_landmarker.h"
 #include "tracking/portraits.h"
 
 namespace lorgnette {
 
-// A square grey picture of the face in one frame, turned upright.
-struct FaceCrop {
-  FaceRegion region;
-  Image<std::uint8_t, 1> grey;
-};
-
 struct FollowedFrame {
   double time_s = 0;
   bool cut_before = false;                 // the film was cut between the frame before and this one
   std::optional<FaceLandmarks> landmarks;  // none: no face
   std::optional<FaceLandmarks> steady;     // of many looks, in a few frames (LookAgain)
-  FaceCrop crop;                           // empty without landmarks
-  FaceCrop right_eye, left_eye;            // finer, of the lids and little more
+  StoredCrop crop;                         // empty without landmarks
+  StoredCrop right_eye, left_eye;          // finer, of the lids and little more
 };
 
 class FaceFollower {
@@ -49,6 +45,7 @@ class FaceFollower {
   FaceLandmarker landmarker_;
   CanonicalMesh canonical_;
   Portraits portraits_;
+  std::shared_ptr<CropStore> crops_ = std::make_shared<CropStore>();
   std::size_t frame_ = 0;  // number of the next frame
   std::optional<FaceRegion> region_;
   int since_mirror_ = 0;              // frames since the network last saw the mirror image

@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "base/camera.h"
-#include "tracking/face_follower.h"
+#include "tracking/crop_store.h"
 #include "tracking/face_model.h"
 
 namespace lorgnette {

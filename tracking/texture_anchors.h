@@ -9,7 +9,7 @@
 
 #include "base/camera.h"
 #include "base/mesh.h"
-#include "tracking/face_follower.h"
+#include "tracking/crop_store.h"
 #include "tracking/patch_match.h"
 #include "tracking/pose_fit.h"
 
