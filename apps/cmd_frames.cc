@@ -5,6 +5,7 @@
 #include <CLI/App.hpp>
 #include <CLI/Config.hpp>
 #include <CLI/Formatter.hpp>
+#include <algorithm>
 #include <nlohmann/json.hpp>
 #include <optional>
 #include <ostream>
@@ -112,8 +113,10 @@ Status ShowFrame(const std::string& name, std::optional<double> unit_mm, bool js
   line("pantoscopic tilt", frame.pantoscopic_tilt_deg, "deg");
   line("temple length", frame.temple_length_mm, "mm");
   line("between the temples at the ears", frame.temple_spread_mm, "mm");
+  std::size_t longest = 0;
+  for (const FramePart& part : frame.parts) longest = std::max(longest, part.name.size());
   for (const FramePart& part : frame.parts) {
-    out << fmt::format("  {:<24}{:<10}{:>9} triangles\n", part.name, KindName(part.kind),
+    out << fmt::format("  {:<{}}  {:<10}{:>9} triangles\n", part.name, longest, KindName(part.kind),
                        part.mesh.triangles.size());
   }
   for (const std::string& note : frame.notes) out << "  note: " << note << '\n';

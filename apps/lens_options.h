@@ -26,7 +26,7 @@ struct LensOptions {
 
   std::vector<double> front_radii_mm;  // with it: a lens by its surfaces; along the axis, across it
   std::vector<double> back_radii_mm;
-  std::string lens_file;  // a lens by all that its surfaces are (apps/lens_file.h)
+  std::string lens_file;  // a lens by all that its surfaces are (apps/lens_surfaces.h)
 
   std::optional<std::string>
       medium;  // absent: CR-39, or the standard one nearest to an index given

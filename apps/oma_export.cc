@@ -1,8 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "apps/oma_export.h"
 
-#include <filesystem>
-
 #include "base/atomic_file.h"
 #include "geometry/oma.h"
 
@@ -12,7 +10,7 @@ Status WriteOmaJob(const TryonResult& result) {
   const TryonRequest& request = result.request;
   OmaFile job = MakeOmaJob(*result.eyewear, result.prescription);
   for (const std::string& path : {request.frame, request.rx}) {
-    if (std::filesystem::path(path).extension() != ".oma") continue;
+    if (!IsOmaPath(path)) continue;
     LG_ASSIGN(const std::string bytes, ReadFile(path));
     LG_ASSIGN(job, OmaFile::Parse(bytes, path));
     break;

@@ -3,10 +3,11 @@
 
 #include <fmt/format.h>
 
-#include <filesystem>
+#include <cmath>
 
 #include "base/atomic_file.h"
 #include "geometry/oma.h"
+#include "optics/base_curve.h"
 #include "optics/fhir.h"
 
 namespace lorgnette {
@@ -17,7 +18,7 @@ Result<Prescription> ReadRxFile(const std::string& path, std::optional<double> p
   }
   LG_ASSIGN(const std::string text, ReadFile(path));
   Prescription rx;
-  if (std::filesystem::path(path).extension() == ".oma") {
+  if (IsOmaPath(path)) {
     LG_ASSIGN(const OmaFile job, OmaFile::Parse(text, path));
     LG_ASSIGN(const OmaOrder order, ReadOmaOrder(job));
     if (!order.has_pd && !pd_mm) {
@@ -35,6 +36,21 @@ Result<Prescription> ReadRxFile(const std::string& path, std::optional<double> p
   }
   if (pd_mm) rx.pd_right_mm = rx.pd_left_mm = *pd_mm / 2;
   return rx;
+}
+
+Result<std::array<std::optional<Diopters>, 2>> OrderedFronts(const std::string& path,
+                                                             double index) {
+  std::array<std::optional<Diopters>, 2> fronts;
+  if (!IsOmaPath(path)) return fronts;
+  LG_ASSIGN(const std::string text, ReadFile(path));
+  LG_ASSIGN(const OmaFile job, OmaFile::Parse(text, path));
+  LG_ASSIGN(const OmaOrder order, ReadOmaOrder(job));
+  const std::optional<double> written[] = {order.front_diopters.right, order.front_diopters.left};
+  for (std::size_t eye = 0; eye < fronts.size(); ++eye) {
+    if (!written[eye] || std::abs(*written[eye]) < kLeastOrderedFront_D) continue;
+    fronts[eye] = ToolPower(Diopters(*written[eye]), kToolIndex, index);
+  }
+  return fronts;
 }
 
 }  // namespace lorgnette

@@ -21,6 +21,7 @@
 #include "apps/tryon_report.h"
 #include "base/atomic_file.h"
 #include "base/progress.h"
+#include "geometry/face_motion.h"
 #include "geometry/frame_io.h"
 #include "geometry/head_occluder.h"
 #include "render/color.h"
@@ -111,6 +112,16 @@ Result<Environment> LitLikeTheFace(const TryonRequest& request, const HeadTrack&
   result.environment = path.empty() ? "even grey" : path;
   result.warnings.emplace_back("the face does not tell its light: the default environment is used");
   return detail;
+}
+
+// Says of which lenses the front is the prescription file's own.
+void NoteOrderedFronts(const std::string& rx, const EyewearOptions& options, Eyewear& eyewear) {
+  for (std::size_t eye = 0; eye < options.base_curves.size(); ++eye) {
+    if (!options.base_curves[eye]) continue;
+    eyewear.wearing.notes.push_back(fmt::format("{} lens: front of {:.2f} D, as FRNT of {} says",
+                                                eye == 0 ? "right" : "left",
+                                                options.base_curves[eye]->value(), rx));
+  }
 }
 
 // Cuts a track down to the frames of a range of the video, and says when one is missing. What the
@@ -225,6 +236,7 @@ class Assembly {
         writer_(writer),
         compositor_(compositor),
         track_(track),
+        motion_(track.face, result.eyewear->frame, result.eyewear->head_from_frame),
         lookup_(track, reader.info().frame_rate),
         chosen_(ChooseStills(track, request.stills)),
         result_(result),
@@ -286,7 +298,9 @@ class Assembly {
   void Render(Job& job) {
     if (!job.tracked->found || failed_) return;
     const Timer timer(result_.seconds.render);
-    if (!job.tracked->vertices.empty()) compositor_.UpdateFace(job.tracked->vertices);
+    if (!job.tracked->vertices.empty()) {
+      compositor_.UpdateFace(motion_.Held(job.tracked->vertices));
+    }
     if (request_.stills_beside_input && IsStill(job)) job.input = job.frame.rgb;
     // Glasses are drawn into the pinhole's picture and brought back into the lens's.
     ImageRgb8 rectified;
@@ -374,6 +388,7 @@ class Assembly {
   VideoWriter& writer_;
   Compositor& compositor_;
   const HeadTrack& track_;
+  FaceMotion motion_;
   TrackLookup lookup_;
   std::vector<long> chosen_;
   TryonResult& result_;
@@ -449,14 +464,17 @@ Result<TryonResult> RunTryon(const TryonRequest& request) {
   TriangleMesh occluder;
   {
     const Timer timer(seconds.design);
+    EyewearOptions options = request.eyewear;
+    LG_ASSIGN(options.base_curves, OrderedFronts(request.rx, options.medium.index_d));
     LG_ASSIGN(FittedEyewear fitted,
               FitEyewear(frame, track.face, track.pupil_right, track.pupil_left,
-                         result.prescription, request.fit, request.eyewear));
+                         result.prescription, request.fit, options));
     const Fit& fit = fitted.fit;
     result.pad_shift_mm = fit.pad_shift_mm;
     result.temple_opening_deg = fit.temple_opening_deg;
     occluder = BuildHeadOccluder(track.face, fit.ears);
     result.eyewear = std::move(fitted.eyewear);
+    NoteOrderedFronts(request.rx, options, *result.eyewear);
     Refinish(request.frame_finish, request.frame_color, result.eyewear->frame);
   }
   const auto prepare = [&] {

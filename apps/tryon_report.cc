@@ -36,7 +36,8 @@ Json FrameJson(const FrameModel& frame) {
   return {{"name", frame.name},
           {"a_mm", frame.boxing.a_mm},
           {"b_mm", frame.boxing.b_mm},
-          {"dbl_mm", frame.boxing.dbl_mm}};
+          {"dbl_mm", frame.boxing.dbl_mm},
+          {"notes", frame.notes}};
 }
 
 Json VideoJson(const TryonResult& r) {

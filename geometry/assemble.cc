@@ -1,9 +1,14 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "geometry/assemble.h"
 
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
 #include <utility>
 
 #include "geometry/frame_adjust.h"
+#include "optics/base_curve.h"
 #include "optics/trace.h"
 
 namespace lorgnette {
@@ -23,16 +28,87 @@ std::optional<double> VertexDistance(const CutLens& lens, const Eigen::Isometry3
   return hit ? std::optional(hit->distance) : std::nullopt;
 }
 
-Result<CutLens> MakeLens(Eye eye, const Fit& fit, const Prescription& prescription,
-                         const Eigen::Vector3d& pupil, const EyewearOptions& options) {
-  Eigen::Vector2d centre;
-  const LensOrder order = OrderLens(eye, fit, prescription, pupil, options, centre);
+Result<CutLens> MakeLens(const LensOrder& order, const LensOpening& opening,
+                         const Eigen::Vector2d& centre, const CutOptions& cut) {
   LG_ASSIGN(LensDesign design, DesignLens(order));
   LG_ASSIGN(const CertifiedLens certified, Certify(std::move(design)));
-  CutOptions cut = options.cut;
-  if (!cut.edge) cut.edge = EdgeFor(fit.frame.mount);
-  return CutAndMount(certified, eye == Eye::kRight ? fit.frame.right : fit.frame.left, centre, cut);
+  return CutAndMount(certified, opening, centre, cut);
 }
+
+struct LensPair {
+  CutLens right, left;
+  double misfit_mm() const { return std::max(right.mount_misfit_mm, left.mount_misfit_mm); }
+};
+
+// The two lenses of a fit, with the base curves of the options or, where these leave them open,
+// such that the bevels follow the rims.
+class PairMaker {
+ public:
+  PairMaker(const Fit& fit, const Prescription& prescription, const Eigen::Vector3d& pupil_right,
+            const Eigen::Vector3d& pupil_left, const EyewearOptions& options)
+      : fit_(fit), cut_(options.cut) {
+    if (!cut_.edge) cut_.edge = EdgeFor(fit.frame.mount);
+    orders_[0] = OrderLens(Eye::kRight, fit, prescription, pupil_right, options, centres_[0]);
+    orders_[1] = OrderLens(Eye::kLeft, fit, prescription, pupil_left, options, centres_[1]);
+  }
+
+  Result<LensPair> Make() const {
+    LG_ASSIGN(LensPair by_rule, MakeOf(orders_));
+    if (cut_.edge != EdgeForm::kBevel || by_rule.misfit_mm() <= kMisfitNote_mm) return by_rule;
+    if (orders_[0].base_curve || orders_[1].base_curve) return by_rule;
+    LensPair best = by_rule;
+    const double gap_D = (by_rule.right.rim_steeper_D + by_rule.left.rim_steeper_D) / 2;
+    const int steps = std::min(kMostBaseSteps, int(std::abs(gap_D) / kBaseStep_D));
+    bool changed = false;
+    for (int k = 1; k <= steps && best.misfit_mm() > kMisfitNote_mm; ++k) {
+      const std::optional<Orders> orders = Changed(by_rule, std::copysign(k * kBaseStep_D, gap_D));
+      if (!orders) break;
+      auto tried = MakeOf(*orders);
+      if (!tried || tried->misfit_mm() >= best.misfit_mm()) break;
+      best = *std::move(tried);
+      changed = true;
+    }
+    if (!changed) return by_rule;
+    for (const auto& [lens, from] :
+         {std::pair(&best.right, &by_rule.right), std::pair(&best.left, &by_rule.left)}) {
+      lens->notes.insert(
+          lens->notes.begin(),
+          fmt::format("front of {:.2f} D in place of the rule's {:.2f}: the bevel is {:.1f} mm off "
+                      "the groove, not {:.1f}",
+                      lens->lens.design().front_power.value(),
+                      from->lens.design().front_power.value(), lens->mount_misfit_mm,
+                      from->mount_misfit_mm));
+    }
+    return best;
+  }
+
+ private:
+  using Orders = std::array<LensOrder, 2>;
+
+  Result<LensPair> MakeOf(const Orders& orders) const {
+    auto right = MakeLens(orders[0], fit_.frame.right, centres_[0], cut_);
+    if (!right) return tl::unexpected(About(Eye::kRight, right.error()));
+    auto left = MakeLens(orders[1], fit_.frame.left, centres_[1], cut_);
+    if (!left) return tl::unexpected(About(Eye::kLeft, left.error()));
+    return LensPair{*std::move(right), *std::move(left)};
+  }
+
+  // The orders with other fronts than the pair has; nullopt where one would be too flat.
+  std::optional<Orders> Changed(const LensPair& pair, double change_D) const {
+    Orders orders = orders_;
+    orders[0].base_curve = pair.right.lens.design().front_power + Diopters(change_D);
+    orders[1].base_curve = pair.left.lens.design().front_power + Diopters(change_D);
+    for (const LensOrder& order : orders) {
+      if (order.base_curve->value() < kFlattestRuleCurve_D) return std::nullopt;
+    }
+    return orders;
+  }
+
+  const Fit& fit_;
+  CutOptions cut_;
+  Orders orders_;
+  Eigen::Vector2d centres_[2];
+};
 
 }  // namespace
 
@@ -47,7 +123,7 @@ LensOrder OrderLens(Eye eye, const Fit& fit, const Prescription& prescription,
   order.eye = eye;
   order.rx = right ? prescription.right : prescription.left;
   order.medium = options.medium;
-  order.base_curve = options.base_curve;
+  order.base_curve = options.base_curves[right ? 0 : 1];
   order.center_thickness_mm = options.center_thickness_mm;
   order.min_center_thickness_mm = options.min_center_thickness_mm;
   order.min_edge_thickness_mm = options.min_edge_thickness_mm;
@@ -60,14 +136,9 @@ LensOrder OrderLens(Eye eye, const Fit& fit, const Prescription& prescription,
 Result<Eyewear> MakeEyewear(const Fit& fit, const Prescription& prescription,
                             const Eigen::Vector3d& pupil_right, const Eigen::Vector3d& pupil_left,
                             const EyewearOptions& options) {
-  const auto make = [&](Eye eye, const Eigen::Vector3d& pupil) {
-    return MakeLens(eye, fit, prescription, pupil, options).map_error([&](Error error) {
-      return About(eye, std::move(error));
-    });
-  };
-  LG_ASSIGN(CutLens right, make(Eye::kRight, pupil_right));
-  LG_ASSIGN(CutLens left, make(Eye::kLeft, pupil_left));
-  Eyewear eyewear{fit.frame, std::move(right), std::move(left), fit.head_from_frame, fit.wearing};
+  LG_ASSIGN(LensPair pair, PairMaker(fit, prescription, pupil_right, pupil_left, options).Make());
+  Eyewear eyewear{fit.frame, std::move(pair.right), std::move(pair.left), fit.head_from_frame,
+                  fit.wearing};
   WearingPosition& wearing = eyewear.wearing;
   for (const auto& [lens, side] :
        {std::pair(&eyewear.right, "right lens: "), std::pair(&eyewear.left, "left lens: ")}) {

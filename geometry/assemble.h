@@ -3,6 +3,7 @@
 // both lenses with their optical centres before the pupils.
 #pragma once
 
+#include <array>
 #include <optional>
 
 #include "base/result.h"
@@ -14,9 +15,14 @@
 
 namespace lorgnette {
 
+inline constexpr double kBaseStep_D = 0.5;  // how far apart the base curves of blanks are
+inline constexpr int kMostBaseSteps = 4;
 struct EyewearOptions {
   Medium medium;
-  std::optional<Diopters> base_curve;         // by rule when absent
+  // Of the right and the left lens; by rule when absent, and then nearer to the rims' curve in steps of
+  // kBaseStep_D, both lenses alike, where a bevel would miss its groove: the least change after
+  // which none does, or, up to kMostBaseSteps, the one that leaves least. A note says so.
+  std::array<std::optional<Diopters>, 2> base_curves;
   std::optional<double> center_thickness_mm;  // by rule when absent
   double min_center_thickness_mm = 1.5, min_edge_thickness_mm = 1.0;
   // The optical centre stands at the monocular PD, and at the pupil's height less this much for

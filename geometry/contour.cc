@@ -18,6 +18,7 @@ constexpr double kToolingPower = 530;  // D * mm: 1000 (1.530 - 1)
 constexpr int kPlaneRounds = 4;
 constexpr double kEdgeDepth_mm = 0.15;    // points so near to a lens' outermost one are of its edge
 constexpr double kHollowSearch_mm = 2.5;  // a groove lies at most this far behind the lip
+constexpr double kWallDepth_mm = 0.3;     // points so near to a rim's nearest one are of its wall
 
 // Cuts of the mesh by one half-plane through the axis: segments in (distance from axis, height).
 using Profile = std::vector<std::pair<Eigen::Vector2d, Eigen::Vector2d>>;
@@ -119,6 +120,35 @@ Feeler FeelOutside(const Profile& profile) {
   return feeler;
 }
 
+// The middle height of the wall that a rim without a groove turns to the axis: its nearest point
+// alone would be anywhere along a flat wall, and at the wall's front or back end under an axis that
+// is a little oblique.
+double WallMiddle(const Profile& profile, const Feeler& feeler) {
+  const double limit = feeler.lip + kWallDepth_mm;
+  std::vector<std::pair<double, double>> spans;  // of heights, low and high
+  for (const auto& [a, b] : profile) {
+    if (std::min(a.x(), b.x()) > limit) continue;
+    const auto within = [&](const Eigen::Vector2d& p, const Eigen::Vector2d& from) {
+      if (p.x() <= limit) return p.y();
+      return from.y() + (limit - from.x()) / (p.x() - from.x()) * (p.y() - from.y());
+    };
+    spans.push_back(std::minmax(within(a, b), within(b, a)));
+  }
+  // Those that hang together with the nearest point.
+  double low = feeler.lip_height, high = low;
+  for (bool grown = true; grown;) {
+    grown = false;
+    for (const auto& [from, to] : spans) {
+      if (from > high + kWallDepth_mm || to < low - kWallDepth_mm) continue;
+      if (from >= low && to <= high) continue;
+      low = std::min(low, from);
+      high = std::max(high, to);
+      grown = true;
+    }
+  }
+  return (low + high) / 2;
+}
+
 Feeler Feel(const Profile& profile, double min_groove_mm) {
   Feeler feeler;
   for (const auto& [a, b] : profile) {
@@ -131,7 +161,7 @@ Feeler Feel(const Profile& profile, double min_groove_mm) {
   }
   if (feeler.lip == kInfinity) return feeler;
   feeler.groove = feeler.lip;
-  feeler.groove_height = feeler.lip_height;
+  feeler.groove_height = WallMiddle(profile, feeler);
   // The deepest hollow between a nearer point below and a nearer point above.
   const std::vector<Eigen::Vector2d> side = VisibleSide(profile, feeler.lip);
   std::vector<double> above(side.size() + 1, kInfinity);

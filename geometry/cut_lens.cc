@@ -3,6 +3,7 @@
 
 #include <fmt/format.h>
 
+#include <Eigen/Dense>
 #include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
@@ -11,6 +12,7 @@
 #include "base/units.h"
 #include "geometry/closed_curve.h"
 #include "geometry/lens_mesh.h"
+#include "optics/base_curve.h"
 #include "optics/trace.h"
 
 namespace lorgnette {
@@ -115,21 +117,26 @@ Seat SeatFollowing(const EdgeHeights& edge, const std::vector<double>& groove, d
   return seat;
 }
 
-// Slope of z against r^2 / 2 along a contour: the curvature of the sphere that it lies on.
-double MeanCurvature(const std::vector<Eigen::Vector2d>& contour, const std::vector<double>& z) {
-  double mean_r = 0, mean_z = 0;
-  const double n = double(contour.size());
+// Curvature of the sphere that heights along a contour lie on, wherever its axis is: d of
+// z = a + b x + c y + d (x^2 + y^2) / 2.
+double CurvatureAlong(const std::vector<Eigen::Vector2d>& contour, const std::vector<double>& z) {
+  Eigen::MatrixX4d system(Eigen::Index(contour.size()), 4);
+  Eigen::VectorXd right(Eigen::Index(contour.size()));
   for (std::size_t k = 0; k < contour.size(); ++k) {
-    mean_r += contour[k].squaredNorm() / 2 / n;
-    mean_z += z[k] / n;
+    const Eigen::Vector2d& p = contour[k];
+    system.row(Eigen::Index(k)) << 1, p.x(), p.y(), p.squaredNorm() / 2;
+    right[Eigen::Index(k)] = z[k];
   }
-  double both = 0, squares = 0;
-  for (std::size_t k = 0; k < contour.size(); ++k) {
-    const double r = contour[k].squaredNorm() / 2 - mean_r;
-    both += r * (z[k] - mean_z);
-    squares += r * r;
-  }
-  return squares > 0 ? both / squares : 0;
+  return system.completeOrthogonalDecomposition().solve(right)[3];
+}
+
+// What keeps a bevel from its groove: another curve, or an optical centre beside the middle, since
+// the lens stays upright in the rim.
+std::string WhyOff(double rim_steeper_D, const Eigen::Vector2d& optical_centre) {
+  constexpr double kLikeCurves_D = 0.5;
+  if (rim_steeper_D > kLikeCurves_D) return "the lens' front is flatter than the rim";
+  if (rim_steeper_D < -kLikeCurves_D) return "the lens' front is more curved than the rim";
+  return fmt::format("the lens is decentred by {:.1f} mm", optical_centre.norm());
 }
 
 }  // namespace
@@ -175,15 +182,15 @@ Result<CutLens> CutAndMount(const CertifiedLens& lens, const LensOpening& openin
     seat = SeatGiven(apex, groove);
   }
   cut.mount_misfit_mm = seat.misfit;
+  cut.rim_steeper_D =
+      1000 * (kToolIndex - 1) *
+      (-CurvatureAlong(cut.contour_mm, groove) - CurvatureAlong(cut.contour_mm, edge.front));
   if (form == EdgeForm::kBevel && seat.misfit > kMisfitNote_mm) {
     const Eigen::Vector2d& at = cut.contour_mm[seat.worst];
     cut.notes.push_back(fmt::format(
-        "bevel {:.1f} mm off the groove at {:.0f} degrees, where the edge is {:.1f} mm thick: the "
-        "lens' front is {} than the rim",
+        "bevel {:.1f} mm off the groove at {:.0f} degrees, where the edge is {:.1f} mm thick: {}",
         seat.misfit, DegreesOf({-at.x(), at.y()}), edge.back[seat.worst] - edge.front[seat.worst],
-        MeanCurvature(cut.contour_mm, edge.front) > -MeanCurvature(cut.contour_mm, groove)
-            ? "more curved"
-            : "flatter"));
+        WhyOff(cut.rim_steeper_D, optical_centre)));
   }
   cut.frame_from_lens =
       opening.frame_from_opening *

@@ -24,6 +24,7 @@ struct CutLens {
   Eigen::Isometry3d frame_from_lens = Eigen::Isometry3d::Identity();
   TriangleMesh mesh;           // lens frame; closed; for export and studies
   double mount_misfit_mm = 0;  // greatest distance from bevel to groove, along the axis
+  double rim_steeper_D = 0;    // groove's curve less the front's, at the tooling index 1.530
   // z of the bevel's apex (or the groove's middle, or of a flat edge), one a contour point.
   std::vector<double> apex_z_mm{};
   std::vector<std::string> notes{};  // "bevel 0.4 mm off the groove at 110 degrees: ..."

@@ -99,7 +99,7 @@ Result<FrameModel> LoadFrame(const std::string& name_or_path, std::optional<doub
     LG_ASSIGN(const FrameParameters parameters, ReadParameters(name_or_path));
     return BuildFrame(parameters);
   }
-  if (extension == ".oma") return LoadTrace(name_or_path);
+  if (IsOmaPath(name_or_path)) return LoadTrace(name_or_path);
   LG_ASSIGN(const ModelFile model, ReadModelFile(name_or_path));
   return ImportFrame(model, name_or_path, unit_mm);
 }

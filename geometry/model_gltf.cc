@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // glTF 2.0 through tinygltf: node tree, triangles, texture coordinates; materials beside
 // (geometry/gltf_material.h).
+#include <fmt/format.h>
 #include <tiny_gltf.h>
 
 #include <Eigen/Geometry>
@@ -9,6 +10,7 @@
 
 #include "geometry/gltf_material.h"
 #include "geometry/model_file.h"
+#include "geometry/texture_file.h"
 
 namespace lorgnette {
 namespace {
@@ -233,12 +235,31 @@ class GltfReader {
   ModelFile model_;
 };
 
+// tinygltf's own loader of pictures does not look whether the view that holds one ends before its
+// buffer does. `user` is the model that is being read.
+bool LoadPicture(tinygltf::Image* image, int index, std::string* error, std::string* warning,
+                 int width, int height, const unsigned char* bytes, int size, void* user) {
+  const auto& gltf = *static_cast<const tinygltf::Model*>(user);
+  bool fits = size > 0;
+  if (fits && image->bufferView >= 0) {
+    const tinygltf::BufferView& view = gltf.bufferViews[std::size_t(image->bufferView)];
+    const std::size_t all = gltf.buffers[std::size_t(view.buffer)].data.size();
+    fits = view.byteOffset <= all && view.byteLength <= all - view.byteOffset;
+  }
+  if (!fits || !PictureFits({reinterpret_cast<const char*>(bytes), std::size_t(size)})) {
+    *error += fmt::format("image {} reaches beyond its bytes\n", index);
+    return false;
+  }
+  return tinygltf::LoadImageData(image, index, error, warning, width, height, bytes, size, nullptr);
+}
+
 }  // namespace
 
 Result<ModelFile> ParseGltf(std::string_view bytes, const std::string& name,
                             const std::string& folder) {
   tinygltf::Model gltf;
   tinygltf::TinyGLTF loader;
+  loader.SetImageLoader(LoadPicture, &gltf);
   std::string error, warning;
   bool read = false;
   try {

@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <charconv>
 #include <cmath>
+#include <filesystem>
 
 #include "base/units.h"
 #include "geometry/closed_curve.h"
@@ -267,6 +268,13 @@ void OmaFile::SetTrace(Eye eye, const std::vector<double>& radii_mm) {
   std::vector<std::string> lines = {fmt::format("TRCFMT=1;{};E;{};F", radii_mm.size(), Side(eye))};
   AppendHundredths("R", radii_mm, lines);
   SetBlock("TRCFMT", eye, {"R", "A"}, lines);
+}
+
+bool IsOmaPath(const std::string& path) {
+  std::string ending = std::filesystem::path(path).extension().string();
+  std::transform(ending.begin(), ending.end(), ending.begin(),
+                 [](unsigned char c) { return char(std::tolower(c)); });
+  return ending == ".oma" || ending == ".vca";
 }
 
 double OmaCurveDiopters(double written) {

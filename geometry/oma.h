@@ -82,9 +82,12 @@ class OmaFile {
 inline constexpr double kOmaGreatestCurve = 25;
 double OmaCurveDiopters(double written);
 
+// Whether a path names such a file: .oma or .vca, in capitals or not.
+bool IsOmaPath(const std::string& path);
+
 // A frame in the style of `style`, its rims built around a job's traces: A, B and outline from the
 // trace, DBL, PANTO, ZTILT and FCRV (else FRNT) from the job where it has them. FTYP 3 or ETYP 2
-// (flat edge) makes it rimless, ETYP 3 (groove) a half rim.
+// (flat edge) makes it rimless, ETYP 3 (groove) a half rim. What the job does not say is noted.
 Result<FrameModel> FrameAroundTrace(const OmaFile& job, FrameParameters style);
 
 // The job's order: SPH, CYL, AX, ADD, PRVM/PRVA (amount, and base in degrees of the eye as drawn: 0

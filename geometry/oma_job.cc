@@ -159,20 +159,31 @@ Result<FrameModel> FrameAroundTrace(const OmaFile& job, FrameParameters style) {
   style.b_mm = boxing.b_mm;
   const int pieces = std::clamp(int(left->contour_mm.size()) / 4, 8, kTraceSplinePieces);
   style.outline = FitClosedSpline(left->contour_mm, pieces).control();
-  const auto take = [&](const char* label, double low, double high, double& to) -> Status {
+  const auto take = [&](const char* label, double low, double high, double& to) -> Result<bool> {
     LG_ASSIGN(const OmaPair pair, job.Numbers(label));
     const std::optional<double> value = pair.left ? pair.left : pair.right;
-    if (value && *value >= low && *value <= high) to = *value;
-    return {};
+    const bool usable = value && *value >= low && *value <= high;
+    if (usable) to = *value;
+    return usable;
   };
-  LG_RETURN_IF_ERROR(take("DBL", 8, 35, style.dbl_mm));
-  LG_RETURN_IF_ERROR(take("PANTO", 0, 25, style.pantoscopic_tilt_deg));
-  LG_RETURN_IF_ERROR(take("ZTILT", 0, 25, style.face_form_deg));
+  std::string guessed;
+  const auto guess = [&](const char* what, double value, const char* unit) {
+    guessed += fmt::format("{}{} {:g} {}", guessed.empty() ? "" : ", ", what, value, unit);
+  };
+  LG_ASSIGN(const bool has_dbl, take("DBL", 8, 35, style.dbl_mm));
+  if (!has_dbl) guess("DBL", style.dbl_mm, "mm");
+  LG_ASSIGN(const bool has_tilt, take("PANTO", 0, 25, style.pantoscopic_tilt_deg));
+  if (!has_tilt) guess("tilt", style.pantoscopic_tilt_deg, "deg");
+  LG_ASSIGN(const bool has_form, take("ZTILT", 0, 25, style.face_form_deg));
+  if (!has_form) guess("face form", style.face_form_deg, "deg");
   // A rim of unknown curve is bent to the lens that the job speaks of.
   LG_ASSIGN(const OmaPair front, job.Numbers("FRNT"));
   const double curve = OmaCurveDiopters((front.left ? front.left : front.right).value_or(0));
-  if (curve >= kLeastCurve && curve <= kGreatestCurve) style.frame_curve_diopters = curve;
-  LG_RETURN_IF_ERROR(take("FCRV", kLeastCurve, kGreatestCurve, style.frame_curve_diopters));
+  const bool has_front = curve >= kLeastCurve && curve <= kGreatestCurve;
+  if (has_front) style.frame_curve_diopters = curve;
+  LG_ASSIGN(const bool has_curve,
+            take("FCRV", kLeastCurve, kGreatestCurve, style.frame_curve_diopters));
+  if (!has_front && !has_curve) guess("frame curve", style.frame_curve_diopters, "D");
   LG_ASSIGN(const OmaPair make, job.Numbers("FTYP"));
   LG_ASSIGN(const OmaPair edge, job.Numbers("ETYP"));
   if (make.left == 3 || edge.left == 2) {
@@ -182,6 +193,7 @@ Result<FrameModel> FrameAroundTrace(const OmaFile& job, FrameParameters style) {
   }
   FrameModel frame = BuildFrame(style);
   frame.notes.push_back("built around the trace of " + job.name());
+  if (!guessed.empty()) frame.notes.push_back("guessed, since the job does not say: " + guessed);
   return frame;
 }
 

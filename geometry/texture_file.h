@@ -13,4 +13,8 @@ namespace lorgnette {
 // Fails, naming `name`, where the bytes are no such picture or it is larger than 8192 x 8192.
 Result<Texture> DecodeTexture(std::string_view bytes, const std::string& name);
 
+// Whether what a picture says of its own parts fits into its bytes, as far as the decoder trusts
+// it.
+bool PictureFits(std::string_view bytes);
+
 }  // namespace lorgnette

@@ -65,10 +65,27 @@ BakedShadow BakedShadow::Bake(const EmbreeScene& scene, const TriangleMesh& face
                               std::uint32_t(first + std::size_t(hidden - results[i].begin())),
                               std::uint32_t(baked.blocked_.size()),
                               face.triangles[points[i].triangle], points[i].u, points[i].v,
-                              bool(buried[i])});
+                              bool(buried[i]), std::uint32_t(i)});
   }
+  baked.FindNeighbours();
   baked.lattice_.Touch(is_touched);
   return baked;
+}
+
+void BakedShadow::FindNeighbours() {
+  const std::vector<LatticePoint>& points = lattice_.points();
+  for (Touched& point : touched_) {
+    if (!point.buried) continue;
+    float nearest = std::numeric_limits<float>::infinity();
+    for (const Touched& other : touched_) {
+      if (other.buried) continue;
+      const float distance =
+          (points[other.point].position - points[point.point].position).squaredNorm();
+      if (distance >= nearest) continue;
+      nearest = distance;
+      point.like = other.point;
+    }
+  }
 }
 
 void BakedShadow::MarkWhatTheFaceHides(const EmbreeScene& scene,
@@ -164,10 +181,7 @@ std::vector<Eigen::Vector3f> BakedShadow::Relight(const HeadLight& light) const 
   std::vector<Eigen::Vector3f> ratios(lattice_.points().size(), Eigen::Vector3f::Ones());
   tbb::parallel_for(std::size_t(0), touched_.size(), [&](std::size_t i) {
     const Touched& point = touched_[i];
-    if (point.buried) {
-      ratios[point.point].setConstant(FaceLattice::kNoValue);
-      return;
-    }
+    if (point.buried) return;
     const Eigen::Vector3f lost_seen = lost(point.first_blocked, point.first_hidden);
     const Eigen::Vector3f lost_hidden = lost(point.first_hidden, point.end_blocked);
     const float w[3] = {1 - point.u - point.v, point.u, point.v};
@@ -185,6 +199,9 @@ std::vector<Eigen::Vector3f> BakedShadow::Relight(const HeadLight& light) const 
                                (1 - weight) * ratio(all[c], lost_seen[c] + lost_hidden[c]);
     }
   });
+  for (const Touched& point : touched_) {
+    if (point.buried) ratios[point.point] = ratios[point.like];
+  }
   return ratios;
 }
 

@@ -21,10 +21,35 @@ namespace {
 constexpr long kMostPixelsAByte = 4096;  // of the file; the tightest compression packs hundreds
 constexpr float kHalfMax = 65504.0f;
 
+// Whether each attribute of the headers lies within the file. OpenEXR would take the size that an
+// attribute states for memory.
+bool AttributesFit(const std::string& path, long bytes) {
+  std::ifstream file(path, std::ios::binary);
+  const auto number = [&] {
+    unsigned char b[4] = {};
+    file.read(reinterpret_cast<char*>(b), sizeof b);
+    return long(b[0]) | long(b[1]) << 8 | long(b[2]) << 16 | long(b[3]) << 24;
+  };
+  file.seekg(4);
+  const bool many_parts = Imf::isMultiPart(int(number()));
+  do {
+    std::string name, type;
+    while (std::getline(file, name, '\0') && !name.empty() && std::getline(file, type, '\0')) {
+      const long size = number(), at = long(file.tellg());
+      if (!file || size > bytes - at) return false;
+      file.seekg(at + size);
+    }
+  } while (many_parts && file && file.peek() > 0);
+  return true;
+}
+
 template <int kChannels>
 Result<Image<float, kChannels>> Read(const std::string& path) {
   try {
     const long bytes = long(std::filesystem::file_size(path));
+    if (!AttributesFit(path, bytes)) {
+      return Failure(path + ": not a readable EXR picture (a header that the file cuts off)");
+    }
     Imf::InputFile file(path.c_str());
     const Imath::Box2i window = file.header().dataWindow();
     const long width = long(window.max.x) - window.min.x + 1;

@@ -98,6 +98,13 @@ std::vector<Eigen::Vector3f> RayFollower::FrameRadiance() const {
   return radiance;
 }
 
+Eigen::Vector3f RayFollower::FrameIrradiance(const SceneHit& hit) const {
+  const Eigen::Vector3i& t = head_.frame.mesh.triangles[hit.triangle];
+  return (1 - hit.u - hit.v) * frame_irradiance_[std::size_t(t[0])] +
+         hit.u * frame_irradiance_[std::size_t(t[1])] +
+         hit.v * frame_irradiance_[std::size_t(t[2])];
+}
+
 float RayFollower::FrameShare(const SceneHit& hit, const Eigen::Vector3f& point) const {
   if (!head_.options.fade_temples || !head_.frame.fades[head_.frame.material_of[hit.triangle]]) {
     return 1;
@@ -142,7 +149,11 @@ GlossEnd RayFollower::EndOf(const GlossRay& ray) const {
   const SceneHit hit =
       head_.scene.Intersect(RaySet::kAll, ray.origin, ray.direction, kOwnTriangles_mm, kEndless);
   if (!hit.hit()) return {true, Eigen::Vector3f::Zero()};
-  if (hit.object == SceneObject::kFrame) return {};
+  if (hit.object == SceneObject::kFrame) {
+    // Mirrored once more, but without a ray: as if the surface there were matt.
+    const FramePoint at = FrameAt(hit);
+    return {false, float(1 / kPi) * (at.diffuse + at.specular).cwiseProduct(FrameIrradiance(hit))};
+  }
   if (hit.object != SceneObject::kFace) return {false, picture_.face_mean()};
   const Eigen::Vector3i& t = head_.face_triangles[hit.triangle];
   const std::vector<Eigen::Vector3f>& skin = picture_.vertex_colours();
@@ -164,11 +175,7 @@ Eigen::Vector3f RayFollower::Frame(const SceneHit& hit, const Eigen::Vector3f& p
   const FrameSurface& frame = head_.frame;
   const std::uint16_t part = frame.material_of[hit.triangle];
   const FramePoint at = FrameAt(hit);
-  const Eigen::Vector3i& t = frame.mesh.triangles[hit.triangle];
-  const float w[3] = {1 - hit.u - hit.v, hit.u, hit.v};
-  Eigen::Vector3f irradiance = Eigen::Vector3f::Zero();
-  for (int k = 0; k < 3; ++k) irradiance += w[k] * frame_irradiance_[std::size_t(t[k])];
-  Eigen::Vector3f colour = float(1 / kPi) * at.diffuse.cwiseProduct(irradiance);
+  Eigen::Vector3f colour = float(1 / kPi) * at.diffuse.cwiseProduct(FrameIrradiance(hit));
   if (effects_.rest[Effect::kGloss]) {
     if (const auto ray = Gloss(at, point, direction)) {
       const GlossEnd end = gloss ? *gloss : EndOf(*ray);

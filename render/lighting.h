@@ -89,6 +89,7 @@ class BakedShadow {
     Eigen::Vector3i vertices;                                // of its triangle
     float u, v;
     bool buried;
+    std::uint32_t like;  // where it is buried: the nearest point that is not, whose factor it takes
   };
   // Light that arrives without glasses, at the vertices: it varies slowly.
   struct Open {
@@ -96,6 +97,7 @@ class BakedShadow {
     Harmonics all;    // as if there were no face
     float share = 1;  // of the cosine-weighted hemisphere that the face leaves open
   };
+  void FindNeighbours();
   void BakeOpenLight(const EmbreeScene& scene, const TriangleMesh& face,
                      const ShadowOptions& options);
   static void MarkWhatTheFaceHides(const EmbreeScene& scene,

@@ -18,7 +18,7 @@ namespace lorgnette {
 // Where a ray that the frame mirrors ends: nowhere, or on something of this radiance.
 struct GlossEnd {
   bool away = false;
-  Eigen::Vector3f radiance{0, 0, 0};  // of skin; black where the frame hides itself
+  Eigen::Vector3f radiance{0, 0, 0};  // of skin, or of the frame itself
 };
 
 // What one pixel's rays share.
@@ -122,6 +122,7 @@ class RayFollower {
     bool own_lobe = true;      // the part's, not a texture's
   };
   FramePoint FrameAt(const SceneHit& hit) const;
+  Eigen::Vector3f FrameIrradiance(const SceneHit& hit) const;
   struct GlossRay {
     Eigen::Vector3f origin, direction;
     float cosine;  // between ray and normal

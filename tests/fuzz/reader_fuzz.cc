@@ -7,9 +7,15 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <cstring>
 #include <string>
 #include <string_view>
 
+#include "apps/lens_surfaces.h"
+#include "apps/render_journal.h"
+#include "base/atomic_file.h"
+#include "geometry/frame_import.h"
+#include "geometry/frame_io.h"
 #include "geometry/frame_parameters.h"
 #include "geometry/model_file.h"
 #include "geometry/mtl_file.h"
@@ -18,9 +24,11 @@
 #include "optics/base_curve.h"
 #include "optics/fhir.h"
 #include "optics/sdf.h"
+#include "render/compose.h"
 #include "render/exposure_tags.h"
 #include "render/image_io.h"
 #include "render/obj_reader.h"
+#include "render/video_io.h"
 #include "tracking/camera_file.h"
 #include "tracking/canonical_mesh.h"
 #include "tracking/head_track.h"
@@ -80,6 +88,7 @@ void CheckOma(std::string_view bytes) {
   Require(file->Text() == bytes);
   (void)Accepted(file->EdgeThickness(Eye::kLeft));
   (void)Accepted(file->Numbers("DBL"));
+  (void)Accepted(ReadOmaOrder(*file));
   const auto traces = file->Traces();
   if (!Accepted(traces)) return;
   for (const OmaTrace& trace : *traces) {
@@ -88,6 +97,25 @@ void CheckOma(std::string_view bytes) {
   OmaFile changed = *file;
   changed.Set("DBL", "18.00");
   Require(changed.Get("DBL") == "18.00");
+}
+
+void CheckFrame(const Result<FrameModel>& result) {
+  const FrameModel* frame = Accepted(result);
+  if (!frame) return;
+  for (const FramePart& part : frame->parts) CheckMesh(part.mesh);
+  Require(frame->right.contour_mm.size() >= 3 && frame->left.contour_mm.size() >= 3);
+  Require(frame->boxing.a_mm > 0 && frame->boxing.b_mm > 0);
+}
+
+void CheckTraceFrame(std::string_view bytes) {
+  static const FrameParameters style =
+      *ParseFrameParameters(*ReadFile(DataDirectory() + "/frames/panto.json"), "panto.json");
+  if (const auto file = OmaFile::Parse(bytes, "fuzz.oma"))
+    CheckFrame(FrameAroundTrace(*file, style));
+}
+
+void CheckModelFrame(std::string_view bytes) {
+  if (const auto model = ParseObj(bytes, "fuzz.obj")) CheckFrame(ImportFrame(*model, "fuzz.obj"));
 }
 
 void CheckTrack(const std::string& text) {
@@ -113,6 +141,34 @@ void CheckCamera(const std::string& text) {
   (void)Accepted(ScaledTo(*camera, 640, 480, "fuzz.json"));
 }
 
+void CheckLens(std::string_view bytes) {
+  LensOptions options;
+  options.lens_file = PathOf(bytes);
+  const Result<LensDesign> result = LensFromFile(options);
+  if (const LensDesign* design = Accepted(result)) Require(design->lens.center_thickness_mm > 0);
+}
+
+void CheckVideo(std::string_view bytes) {
+  auto reader = VideoReader::Open(PathOf(bytes));
+  if (!Accepted(reader)) return;
+  constexpr int kFrames = 8;
+  for (int i = 0; i < kFrames; ++i) {
+    const auto frame = reader->Next();
+    if (!Accepted(frame) || !*frame) return;
+    Require((*frame)->rgb.width == reader->info().width);
+    Require((*frame)->rgb.height == reader->info().height);
+  }
+}
+
+void CheckJournal(std::string_view bytes) {
+  std::uint64_t key = 0;  // the file's own: any other starts it anew
+  if (bytes.size() >= 2 * sizeof key) std::memcpy(&key, bytes.data() + sizeof key, sizeof key);
+  const auto journal = RenderJournal::Open(PathOf(bytes), key);
+  if (!Accepted(journal)) return;
+  ImageRgb8 picture(16, 12);
+  for (long frame = -1; frame < 4; ++frame) (void)journal->Restore(frame, picture);
+}
+
 void Read(std::string_view bytes) {
   static const std::string_view reader = kFuzzedReader;
   const std::string text(bytes);
@@ -128,8 +184,12 @@ void Read(std::string_view bytes) {
     (void)Accepted(ParseMtl(bytes, "fuzz.mtl", ""));
   } else if (reader == "texture") {
     (void)Accepted(DecodeTexture(bytes, "fuzz.png"));
+  } else if (reader == "model_frame") {
+    CheckModelFrame(bytes);
   } else if (reader == "oma") {
     CheckOma(bytes);
+  } else if (reader == "trace_frame") {
+    CheckTraceFrame(bytes);
   } else if (reader == "frame") {
     (void)Accepted(ParseFrameParameters(text, "fuzz.json"));
   } else if (reader == "prescription") {
@@ -141,6 +201,8 @@ void Read(std::string_view bytes) {
     (void)Accepted(ParseSdf(text, "fuzz.sdf"));
   } else if (reader == "base_curves") {
     (void)Accepted(ParseBaseCurveChart(text, "fuzz.json"));
+  } else if (reader == "lens") {
+    CheckLens(bytes);
   } else if (reader == "track") {
     CheckTrack(text);
   } else if (reader == "camera") {
@@ -156,6 +218,12 @@ void Read(std::string_view bytes) {
     if (Accepted(mesh)) CheckMesh(*mesh);
   } else if (reader == "exposure_tags") {
     (void)Accepted(ReadExposureTags(PathOf(bytes)));
+  } else if (reader == "video") {
+    CheckVideo(bytes);
+  } else if (reader == "case") {
+    (void)Accepted(ReadComposeCase(PathOf(bytes)));
+  } else if (reader == "journal") {
+    CheckJournal(bytes);
   } else {
     Require(reader == "picture");
     CheckImage(ReadPicture(PathOf(bytes)));

@@ -4,6 +4,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include "base/units.h"
 #include "geometry/closed_curve.h"
 #include "geometry/frame_io.h"
 
@@ -57,6 +58,50 @@ INSTANTIATE_TEST_SUITE_P(All, ShippedFrames,
                            std::erase(name, '-');
                            return name;
                          });
+
+// A rim of rectangular section, 4 mm deep, whose wall toward the lens is flat.
+TriangleMesh FlatWalledRim(const Eigen::Isometry3d& frame_from_rim) {
+  TriangleMesh mesh;
+  constexpr int kSides = 240;
+  const double offsets[4][2] = {{0, -2}, {2, -2}, {2, 2}, {0, 2}};
+  for (int i = 0; i < kSides; ++i) {
+    const double angle = 2 * kPi * i / kSides;
+    for (const auto& o : offsets) {
+      mesh.positions.push_back(frame_from_rim * Eigen::Vector3d((25 + o[0]) * std::cos(angle),
+                                                                (19 + o[0]) * std::sin(angle),
+                                                                o[1]));
+    }
+    for (int k = 0; k < 4; ++k) {
+      const int a = 4 * i + k, b = 4 * i + (k + 1) % 4;
+      const int c = 4 * ((i + 1) % kSides) + k, d = 4 * ((i + 1) % kSides) + (k + 1) % 4;
+      mesh.triangles.emplace_back(a, c, d);
+      mesh.triangles.emplace_back(a, d, b);
+    }
+  }
+  ComputeVertexNormals(mesh);
+  return mesh;
+}
+
+TEST(TraceOpenings, FindsThePlaneOfARimWithoutAGroove) {
+  for (const double form_deg : {0.0, 2.0, 6.0}) {
+    TriangleMesh front;
+    for (const double side : {-1.0, 1.0}) {
+      Append(front, FlatWalledRim(Eigen::Translation3d(side * 34, 0, 0) *
+                                  Eigen::AngleAxisd(side * RadiansFromDegrees(form_deg),
+                                                    Eigen::Vector3d::UnitY())));
+    }
+    const auto traced = TraceOpenings(front);
+    ASSERT_TRUE(traced.has_value()) << traced.error().message;
+    // Chords of 240 sides lie 2 um inside; half of a wall's height is told to that over 0.3 mm.
+    EXPECT_NEAR(traced->face_form_deg, form_deg, 0.2);
+    EXPECT_NEAR(traced->frame_curve_diopters, 0, 0.1);
+    EXPECT_NEAR(traced->boxing.a_mm, 50, 0.1);
+    for (const LensOpening* opening : {&traced->right, &traced->left}) {
+      EXPECT_NEAR(opening->frame_from_opening.translation().z(), 0, 0.05);
+      EXPECT_NEAR(opening->frame_from_opening.linear()(1, 2), 0, 0.003);
+    }
+  }
+}
 
 TEST(TraceOpenings, RefusesARimWithAGap) {
   FrameModel frame = *LoadFrame("round");

@@ -11,6 +11,8 @@
 #include "geometry/face_relief.h"
 #include "geometry/frame_io.h"
 #include "geometry/head_occluder.h"
+#include "geometry/parametric_frame.h"
+#include "optics/base_curve.h"
 
 namespace lorgnette {
 namespace {
@@ -144,6 +146,39 @@ TEST(MakeEyewear, PutsOpticalCentresBeforeThePupilsAndMeasuresTheVertexDistance)
   EXPECT_EQ(eyewear->left.lens.design().order.rx.sphere.value(), -4.5);
   EXPECT_GT(eyewear->wearing.vertex_distance_right_mm, 5);
   EXPECT_LT(eyewear->wearing.vertex_distance_right_mm, 25);
+}
+
+TEST(MakeEyewear, ChoosesFrontsWhoseBevelsFollowTheRims) {
+  FrameParameters flat = *LoadFrame("panto")->parameters;
+  flat.frame_curve_diopters = 0.5;
+  const auto fit = PlaceOnFace(BuildFrame(flat), MadeFace(), kRight, kLeft);
+  ASSERT_TRUE(fit.has_value());
+  Prescription rx;
+  rx.right.sphere = Diopters(-0.5);
+  rx.left.sphere = Diopters(-0.75);
+  EyewearOptions options;
+  options.medium.index_d = 1.6;
+  const Diopters by_rule[] = {VogelBaseCurve(rx.right.sphere), VogelBaseCurve(rx.left.sphere)};
+  options.base_curves = {by_rule[0], by_rule[1]};
+  const auto given = MakeEyewear(*fit, rx, kRight, kLeft, options);
+  options.base_curves = {};
+  const auto chosen = MakeEyewear(*fit, rx, kRight, kLeft, options);
+  ASSERT_TRUE(given.has_value() && chosen.has_value());
+  const auto misfit = [](const Eyewear& eyewear) {
+    return std::max(eyewear.right.mount_misfit_mm, eyewear.left.mount_misfit_mm);
+  };
+  const auto front = [](const CutLens& lens) { return lens.lens.design().front_power; };
+  ASSERT_GT(misfit(*given), kMisfitNote_mm);
+  EXPECT_EQ(front(given->right), by_rule[0]);
+  EXPECT_LT(given->right.rim_steeper_D, -2);
+  EXPECT_LT(misfit(*chosen), misfit(*given) - kMisfitNote_mm);
+  const double change = (front(chosen->right) - by_rule[0]).value();
+  EXPECT_LT(change, 0);
+  EXPECT_GE(change, -kMostBaseSteps * kBaseStep_D - 1e-12);
+  EXPECT_NEAR(std::remainder(change, kBaseStep_D), 0, 1e-12);
+  EXPECT_NEAR((front(chosen->left) - by_rule[1]).value(), change, 1e-12);
+  EXPECT_THAT(chosen->wearing.notes,
+              testing::Contains(testing::HasSubstr("in place of the rule's 5.75")));
 }
 
 TEST(MakeEyewear, NamesTheEyeWhoseLensFails) {

@@ -118,6 +118,16 @@ TEST(ParseObj, TakesMaterialsUvsAndTellsWhatIsMissing) {
                                             testing::HasSubstr("materials left out")));
 }
 
+// Eleven million pixels a line, in a hundred bytes: refused before there is memory for them.
+TEST(Texture, APngOfTooManyPixelsIsRefused) {
+  const char bytes[] = "\x89PNG\r\n\x1a\n\0\0\0\x0dIHDR\0\xab\0\4\0\0\0\4\x10\0\0\0\0\0\0\0\0";
+  const std::string_view picture(bytes, sizeof bytes - 1);
+  EXPECT_FALSE(PictureFits(picture));
+  const auto refused = DecodeTexture(picture, "a.png");
+  ASSERT_FALSE(refused);
+  EXPECT_THAT(refused.error().message, testing::HasSubstr("8192"));
+}
+
 TEST(Texture, AChunkLongerThanItsFileIsRefused) {
   // A header, and a data chunk that states 1.9 GB.
   const char bytes[] =

@@ -150,6 +150,14 @@ TEST(LoadFrame, BuildsAFrameAroundALabTraceOnTheCommandLine) {
   EXPECT_FALSE(frame->nose_contacts.empty());
 }
 
+TEST(IsOmaPath, GoesByTheEndingInAnyCase) {
+  EXPECT_TRUE(IsOmaPath("a/job.oma"));
+  EXPECT_TRUE(IsOmaPath("JOB.OMA"));
+  EXPECT_TRUE(IsOmaPath("job.Vca"));
+  EXPECT_FALSE(IsOmaPath("oma"));
+  EXPECT_FALSE(IsOmaPath("job.oma.json"));
+}
+
 TEST(OmaCurveDiopters, TakesALargeNumberForARadius) {
   EXPECT_EQ(OmaCurveDiopters(5.46), 5.46);
   EXPECT_NEAR(OmaCurveDiopters(85.68), 530 / 85.68, 1e-12);
@@ -165,6 +173,23 @@ TEST(FrameAroundTrace, HasTheTracesBoxing) {
   EXPECT_NEAR(frame->boxing.b_mm, 46, kTraceStep_mm);
   EXPECT_EQ(frame->boxing.dbl_mm, 18);
   EXPECT_NEAR(frame->boxing.circumference_mm, 2 * kPi * 23, kTraceStep_mm);
+}
+
+TEST(FrameAroundTrace, NotesWhatTheJobDoesNotSay) {
+  const auto style = ParseFrameParameters(*ReadFile(DataDirectory() + "/frames/panto.json"), "p");
+  ASSERT_TRUE(style);
+  const auto notes = [&](const std::string& labels) {
+    const OmaFile job = *OmaFile::Parse(labels + RoundTrace(400, "R"), "t.oma");
+    return FrameAroundTrace(job, *style)->notes;
+  };
+  const auto guessed = [](const std::string& what) {
+    return testing::Contains(
+        testing::AllOf(testing::HasSubstr("guessed"), testing::EndsWith(what)));
+  };
+  EXPECT_THAT(notes("PANTO=7\n"), guessed("face form 4 deg, frame curve 3 D"));
+  EXPECT_THAT(notes("PANTO=7\nZTILT=3\nFCRV=99\n"), guessed(": frame curve 3 D"));
+  EXPECT_THAT(notes("PANTO=7\nZTILT=3\nFRNT=5\n"),
+              testing::Not(testing::Contains(testing::HasSubstr("guessed"))));
 }
 
 TEST(FrameAroundTrace, MakesHalfRimAndRimlessFramesWhereTheJobSaysSo) {

@@ -91,6 +91,37 @@ TEST(Compositor, ShowsNoLensInAWhiteFurnace) {
   }
 }
 
+// Metal that mirrors metal shows metal: a rim's inner wall, seen from the side, mirrors the wall
+// across, and is not black where it does.
+TEST(Compositor, ShowsNoBlackOnMetalInAWhiteFurnace) {
+  constexpr float kMetal = 0.8f;
+  Eyewear eyewear = WithRims({});
+  for (FramePart& part : eyewear.frame.parts) {
+    part.material.diffuse.setZero();
+    part.material.specular.setConstant(kMetal);
+  }
+  CompositorOptions options;
+  options.shadow = ShadowMode::kNone;
+  const Compositor compositor =
+      Make(eyewear, test::Wall(600, 0), Environment::Constant({1, 1, 1}), options);
+  const test::View view = test::ViewFrom(60, 0, 150, kViewWidth, kViewHeight, 150);
+  const ImageRgbF output = compositor.Render(test::ConstantImage(kViewWidth, kViewHeight, 1),
+                                             view.camera, view.camera_from_head);
+  const ImageRgbaF hits = compositor.HitMap(view.camera, view.camera_from_head);
+  long seen = 0;
+  float least = 1;
+  for (int y = 0; y < hits.height; ++y) {
+    for (int x = 0; x < hits.width; ++x) {
+      if (int(std::lround(hits.at(x, y)[3])) != int(HitCode::kFrame)) continue;
+      ++seen;
+      least = std::min(least, output.at(x, y)[1]);
+    }
+  }
+  EXPECT_GT(seen, 1000);
+  // Twice mirrored, and at least half of the sky is open to the second mirror.
+  EXPECT_GT(least, 0.5f * kMetal * kMetal);
+}
+
 TEST(Compositor, GivesTheSamePixelsOnAnyNumberOfThreads) {
   const ImageRgbF input = Pattern(kViewWidth, kViewHeight);
   const test::View view = Front();

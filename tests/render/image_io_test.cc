@@ -68,6 +68,23 @@ TEST(Exr, TellsWhatIsWrongWithAFile) {
   EXPECT_FALSE(ReadExr(Temporary("missing.exr")));
 }
 
+// An attribute of 1.9 GB in a file of some hundred bytes (what fuzzing found), and a good file cut
+// off anywhere.
+TEST(Exr, RefusesAFileThatEndsBeforeItsHeaderDoes) {
+  const std::string path = Temporary("cut.exr");
+  ASSERT_TRUE(WriteFileAtomically(
+      path, std::string("v/1\x01\2\0\0\0", 8) + std::string("a\0b\0\0\0\6\x64", 8)));
+  const auto broken = ReadExr(path);
+  ASSERT_FALSE(broken);
+  EXPECT_NE(broken.error().message.find(path), std::string::npos);
+  ASSERT_TRUE(WriteExr(Ramp(3, 2), path));
+  const std::string good = *ReadFile(path);
+  for (std::size_t length = 0; length < good.size(); ++length) {
+    ASSERT_TRUE(WriteFileAtomically(path, good.substr(0, length)));
+    EXPECT_FALSE(ReadExr(path)) << length;
+  }
+}
+
 TEST(Exr, LeavesNothingBehindWhereItCannotWrite) {
   EXPECT_FALSE(WriteExr(Ramp(2, 2), Temporary("no_folder/x.exr")));
 }

@@ -135,7 +135,7 @@ Result<WornScene> MadeScene(const LensOrder& order, const std::string& frame_nam
   prescription.right = prescription.left = order.rx;
   EyewearOptions options;
   options.medium = order.medium;
-  options.base_curve = order.base_curve;
+  options.base_curves = {order.base_curve, order.base_curve};
   LG_ASSIGN(FittedEyewear fitted, FitEyewear(frame, face, {-kHalfPd_mm, 0, 0}, {kHalfPd_mm, 0, 0},
                                              prescription, {}, options));
   TriangleMesh occluder = BuildHeadOccluder(face, fitted.fit.ears);
