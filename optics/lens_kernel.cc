@@ -217,13 +217,21 @@ void CopyTail(const T* from, T* to, std::size_t m) {
   for (std::size_t k = 0; k < m; ++k) to[k] = from[k];
 }
 
+// The whole registers of the job; returns how many rays they hold. Called for the ragged tail too,
+// rather than compiled twice.
 template <class First, class Second, class D, class T = hn::TFromD<D>>
-LORGNETTE_KERNEL_INLINE void TraceAll(D d, const LensJob<T>& job) {
+HWY_NOINLINE std::size_t TraceWhole(D d, const LensJob<T>& job) {
   const First first(d, job.first, job.sense);
   const Second second(d, job.second, job.sense);
   const std::size_t lanes = hn::Lanes(d);
   std::size_t i = 0;
   for (; i + lanes <= job.n; i += lanes) TraceOne(d, first, second, job, job.in, job.out, i);
+  return i;
+}
+
+template <class First, class Second, class D, class T = hn::TFromD<D>>
+LORGNETTE_KERNEL_INLINE void TraceAll(D d, const LensJob<T>& job) {
+  const std::size_t i = TraceWhole<First, Second>(d, job);
   const std::size_t m = job.n - i;
   if (m == 0) return;
 
@@ -238,7 +246,11 @@ LORGNETTE_KERNEL_INLINE void TraceAll(D d, const LensJob<T>& job) {
   if (job.out.second != nullptr) out.second = &second_hit.arrays;
   if (job.out.first_reflectance != nullptr) out.first_reflectance = reflectance1;
   if (job.out.second_reflectance != nullptr) out.second_reflectance = reflectance2;
-  TraceOne(d, first, second, job, in.Fill(job.in, i, m), out, 0);
+  LensJob<T> rest = job;
+  rest.in = in.Fill(job.in, i, m);
+  rest.n = hn::Lanes(d);
+  rest.out = out;
+  TraceWhole<First, Second>(d, rest);
   exit.CopyTo(job.out.exit, i, m);
   CopyTail(status, job.out.status + i, m);
   if (out.first != nullptr) first_hit.CopyTo(*job.out.first, i, m);
@@ -268,13 +280,19 @@ LORGNETTE_KERNEL_INLINE void TraceLensOf(const LensJob<T>& job) {
   TraceAll<Sphere, Sphere>(d, job);
 }
 
-template <typename T>
-LORGNETTE_KERNEL_INLINE void TraceFaceOf(const FaceJob<T>& job) {
-  const hn::ScalableTag<T> d;
-  const AnyFace<hn::ScalableTag<T>> face(d, job.face, job.sense);
+template <class D, class T = hn::TFromD<D>>
+HWY_NOINLINE std::size_t FaceWhole(D d, const FaceJob<T>& job) {
+  const AnyFace<D> face(d, job.face, job.sense);
   const std::size_t lanes = hn::Lanes(d);
   std::size_t i = 0;
   for (; i + lanes <= job.n; i += lanes) FaceOne(d, face, job, job.in, job.out, i);
+  return i;
+}
+
+template <typename T>
+LORGNETTE_KERNEL_INLINE void TraceFaceOf(const FaceJob<T>& job) {
+  const hn::ScalableTag<T> d;
+  const std::size_t i = FaceWhole(d, job);
   const std::size_t m = job.n - i;
   if (m == 0) return;
 
@@ -286,7 +304,11 @@ LORGNETTE_KERNEL_INLINE void TraceFaceOf(const FaceJob<T>& job) {
   if (job.out.refracted != nullptr) out.refracted = &refracted.arrays;
   if (job.out.reflected != nullptr) out.reflected = &reflected.arrays;
   if (job.out.reflectance != nullptr) out.reflectance = reflectance;
-  FaceOne(d, face, job, in.Fill(job.in, i, m), out, 0);
+  FaceJob<T> rest = job;
+  rest.in = in.Fill(job.in, i, m);
+  rest.n = hn::Lanes(d);
+  rest.out = out;
+  FaceWhole(d, rest);
   hit.CopyTo(job.out.hit, i, m);
   CopyTail(status, job.out.status + i, m);
   if (out.refracted != nullptr) refracted.CopyTo(*job.out.refracted, i, m, false);
