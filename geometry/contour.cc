@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "geometry/contour.h"
 
-#include <Eigen/Dense>
+#include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -181,7 +181,7 @@ Feeler Feel(const Profile& profile, double min_groove_mm) {
 
 // z = a + b x + c y + d (x^2 + y^2) through the groove: the plane's tilt free of the frame curve.
 Eigen::Vector4d FitCurvedPlane(const std::vector<Eigen::Vector3d>& points) {
-  Eigen::MatrixX4d system(Eigen::Index(points.size()), 4);
+  Eigen::MatrixXd system(Eigen::Index(points.size()), 4);
   Eigen::VectorXd right(Eigen::Index(points.size()));
   for (std::size_t i = 0; i < points.size(); ++i) {
     const Eigen::Vector3d& p = points[i];
@@ -189,7 +189,7 @@ Eigen::Vector4d FitCurvedPlane(const std::vector<Eigen::Vector3d>& points) {
     right[Eigen::Index(i)] = p.z();
   }
   // On a circular rim the curve cannot be told from the height: the least solution leaves d at 0.
-  return system.completeOrthogonalDecomposition().solve(right);
+  return LeastSquares(system, right);
 }
 
 struct Trace {

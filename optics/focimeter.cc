@@ -1,10 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "optics/focimeter.h"
 
-#include <Eigen/Dense>
+#include <Eigen/Geometry>
 #include <cmath>
 
 #include "base/check.h"
+#include "base/linear_algebra.h"
 #include "optics/coddington.h"
 #include "optics/trace.h"
 
@@ -75,7 +76,7 @@ std::optional<FocimeterReading> Read(const Lens& lens, double index, const Vecto
     design.row(2 * k + 1) << 0, h.x(), h.y();
     slopes.segment<2>(2 * k) = s;
   }
-  const Eigen::Vector3d fit = design.colPivHouseholderQr().solve(slopes);
+  const Eigen::Vector3d fit = LeastSquares(design, slopes);
 
   FocimeterReading reading;
   reading.power_D << fit.x(), fit.y(), fit.y(), fit.z();

@@ -36,8 +36,9 @@ struct Refraction {
 
 // eta = n_before / n_after; `difference` = (1 - eta)(1 + eta), exact for eta = 1.
 template <class D>
-HWY_INLINE Refraction<D> RefractAt(D d, const FaceHit<D>& hit, const Vec3<D>& dir, hn::Vec<D> eta,
-                                   hn::Vec<D> difference, hn::Vec<D> sense) {
+LORGNETTE_KERNEL_INLINE Refraction<D> RefractAt(D d, const FaceHit<D>& hit, const Vec3<D>& dir,
+                                                hn::Vec<D> eta, hn::Vec<D> difference,
+                                                hn::Vec<D> sense) {
   const auto eta_cosine = hn::Mul(eta, hit.cosine);
   const auto after2 = hn::MulAdd(eta_cosine, eta_cosine, difference);
   Refraction<D> r;
@@ -52,7 +53,8 @@ HWY_INLINE Refraction<D> RefractAt(D d, const FaceHit<D>& hit, const Vec3<D>& di
 
 // Unpolarised reflectance; 1 on total reflection, where the cosine after is 0.
 template <class D>
-HWY_INLINE hn::Vec<D> Reflectance(D d, hn::Vec<D> before, hn::Vec<D> after, hn::Vec<D> eta) {
+LORGNETTE_KERNEL_INLINE hn::Vec<D> Reflectance(D d, hn::Vec<D> before, hn::Vec<D> after,
+                                               hn::Vec<D> eta) {
   const auto eb = hn::Mul(eta, before), ea = hn::Mul(eta, after);
   const auto rs = hn::Div(hn::Sub(eb, after), hn::Add(eb, after));
   const auto rp = hn::Div(hn::Sub(before, ea), hn::Add(before, ea));
@@ -61,30 +63,31 @@ HWY_INLINE hn::Vec<D> Reflectance(D d, hn::Vec<D> before, hn::Vec<D> after, hn::
 }
 
 template <class D, class T>
-HWY_INLINE Vec3<D> LoadPoints(D d, const RayArrays<T>& a, std::size_t i) {
+LORGNETTE_KERNEL_INLINE Vec3<D> LoadPoints(D d, const RayArrays<T>& a, std::size_t i) {
   return {hn::LoadU(d, a.ox + i), hn::LoadU(d, a.oy + i), hn::LoadU(d, a.oz + i)};
 }
 template <class D, class T>
-HWY_INLINE Vec3<D> LoadDirections(D d, const RayArrays<T>& a, std::size_t i) {
+LORGNETTE_KERNEL_INLINE Vec3<D> LoadDirections(D d, const RayArrays<T>& a, std::size_t i) {
   return {hn::LoadU(d, a.dx + i), hn::LoadU(d, a.dy + i), hn::LoadU(d, a.dz + i)};
 }
 template <class D, class T>
-HWY_INLINE void StorePoints(D d, hn::Mask<D> ok, const Vec3<D>& v, T offset_z,
-                            const RayArrays<T>& a, std::size_t i) {
+LORGNETTE_KERNEL_INLINE void StorePoints(D d, hn::Mask<D> ok, const Vec3<D>& v, T offset_z,
+                                         const RayArrays<T>& a, std::size_t i) {
   hn::StoreU(hn::IfThenElseZero(ok, v.x), d, a.ox + i);
   hn::StoreU(hn::IfThenElseZero(ok, v.y), d, a.oy + i);
   hn::StoreU(hn::IfThenElseZero(ok, hn::Add(v.z, hn::Set(d, offset_z))), d, a.oz + i);
 }
 template <class D, class T>
-HWY_INLINE void StoreDirections(D d, hn::Mask<D> ok, const Vec3<D>& v, const RayArrays<T>& a,
-                                std::size_t i) {
+LORGNETTE_KERNEL_INLINE void StoreDirections(D d, hn::Mask<D> ok, const Vec3<D>& v,
+                                             const RayArrays<T>& a, std::size_t i) {
   hn::StoreU(hn::IfThenElseZero(ok, v.x), d, a.dx + i);
   hn::StoreU(hn::IfThenElseZero(ok, v.y), d, a.dy + i);
   hn::StoreU(hn::IfThenElseZero(ok, v.z), d, a.dz + i);
 }
 
 template <class D>
-HWY_INLINE void StoreStatus(D d, hn::Mask<D> reached, hn::Mask<D> refracted, std::uint8_t* status) {
+LORGNETTE_KERNEL_INLINE void StoreStatus(D d, hn::Mask<D> reached, hn::Mask<D> refracted,
+                                         std::uint8_t* status) {
   using T = hn::TFromD<D>;
   constexpr auto kMiss = T(static_cast<int>(RayStatus::kMissesSurface));
   constexpr auto kTotal = T(static_cast<int>(RayStatus::kTotalInternalReflection));
@@ -101,15 +104,15 @@ HWY_INLINE void StoreStatus(D d, hn::Mask<D> reached, hn::Mask<D> refracted, std
 
 // A direction is taken as unit; one so long that squares could overflow is no ray.
 template <class D>
-HWY_INLINE hn::Mask<D> IsDirection(D d, const Vec3<D>& dir) {
+LORGNETTE_KERNEL_INLINE hn::Mask<D> IsDirection(D d, const Vec3<D>& dir) {
   return hn::Lt(Dot<D>(dir, dir), hn::Set(d, 2));
 }
 
 // One register of rays through the lens, from `in` at i to `out` at i.
 template <class D, class First, class Second, class T = hn::TFromD<D>>
-HWY_INLINE void TraceOne(D d, const First& first, const Second& second, const LensJob<T>& job,
-                         const RayArrays<const T>& in, const LensBatchOutput<T>& out,
-                         std::size_t i) {
+LORGNETTE_KERNEL_INLINE void TraceOne(D d, const First& first, const Second& second,
+                                      const LensJob<T>& job, const RayArrays<const T>& in,
+                                      const LensBatchOutput<T>& out, std::size_t i) {
   const auto sense = hn::Set(d, job.sense);
   const auto dir = LoadDirections(d, in, i);
   auto origin = LoadPoints(d, in, i);
@@ -160,9 +163,9 @@ HWY_INLINE void TraceOne(D d, const First& first, const Second& second, const Le
 
 // One register of rays inside the glass to one face.
 template <class D, class T = hn::TFromD<D>>
-HWY_INLINE void FaceOne(D d, const AnyFace<D>& face, const FaceJob<T>& job,
-                        const RayArrays<const T>& in, const FaceBatchOutput<T>& out,
-                        std::size_t i) {
+LORGNETTE_KERNEL_INLINE void FaceOne(D d, const AnyFace<D>& face, const FaceJob<T>& job,
+                                     const RayArrays<const T>& in, const FaceBatchOutput<T>& out,
+                                     std::size_t i) {
   const auto dir = LoadDirections(d, in, i);
   auto p = LoadPoints(d, in, i);
   p.z = hn::Sub(p.z, hn::Set(d, job.face.vertex_z));
@@ -214,13 +217,21 @@ void CopyTail(const T* from, T* to, std::size_t m) {
   for (std::size_t k = 0; k < m; ++k) to[k] = from[k];
 }
 
+// The whole registers of the job; returns how many rays they hold. Called for the ragged tail too,
+// rather than compiled twice.
 template <class First, class Second, class D, class T = hn::TFromD<D>>
-HWY_INLINE void TraceAll(D d, const LensJob<T>& job) {
+HWY_NOINLINE std::size_t TraceWhole(D d, const LensJob<T>& job) {
   const First first(d, job.first, job.sense);
   const Second second(d, job.second, job.sense);
   const std::size_t lanes = hn::Lanes(d);
   std::size_t i = 0;
   for (; i + lanes <= job.n; i += lanes) TraceOne(d, first, second, job, job.in, job.out, i);
+  return i;
+}
+
+template <class First, class Second, class D, class T = hn::TFromD<D>>
+LORGNETTE_KERNEL_INLINE void TraceAll(D d, const LensJob<T>& job) {
+  const std::size_t i = TraceWhole<First, Second>(d, job);
   const std::size_t m = job.n - i;
   if (m == 0) return;
 
@@ -235,7 +246,11 @@ HWY_INLINE void TraceAll(D d, const LensJob<T>& job) {
   if (job.out.second != nullptr) out.second = &second_hit.arrays;
   if (job.out.first_reflectance != nullptr) out.first_reflectance = reflectance1;
   if (job.out.second_reflectance != nullptr) out.second_reflectance = reflectance2;
-  TraceOne(d, first, second, job, in.Fill(job.in, i, m), out, 0);
+  LensJob<T> rest = job;
+  rest.in = in.Fill(job.in, i, m);
+  rest.n = hn::Lanes(d);
+  rest.out = out;
+  TraceWhole<First, Second>(d, rest);
   exit.CopyTo(job.out.exit, i, m);
   CopyTail(status, job.out.status + i, m);
   if (out.first != nullptr) first_hit.CopyTo(*job.out.first, i, m);
@@ -250,7 +265,7 @@ HWY_INLINE void TraceAll(D d, const LensJob<T>& job) {
 }
 
 template <typename T>
-HWY_INLINE void TraceLensOf(const LensJob<T>& job) {
+LORGNETTE_KERNEL_INLINE void TraceLensOf(const LensJob<T>& job) {
   const hn::ScalableTag<T> d;
   using D = hn::ScalableTag<T>;
   using Sphere = SphereFace<D>;
@@ -265,13 +280,19 @@ HWY_INLINE void TraceLensOf(const LensJob<T>& job) {
   TraceAll<Sphere, Sphere>(d, job);
 }
 
-template <typename T>
-HWY_INLINE void TraceFaceOf(const FaceJob<T>& job) {
-  const hn::ScalableTag<T> d;
-  const AnyFace<hn::ScalableTag<T>> face(d, job.face, job.sense);
+template <class D, class T = hn::TFromD<D>>
+HWY_NOINLINE std::size_t FaceWhole(D d, const FaceJob<T>& job) {
+  const AnyFace<D> face(d, job.face, job.sense);
   const std::size_t lanes = hn::Lanes(d);
   std::size_t i = 0;
   for (; i + lanes <= job.n; i += lanes) FaceOne(d, face, job, job.in, job.out, i);
+  return i;
+}
+
+template <typename T>
+LORGNETTE_KERNEL_INLINE void TraceFaceOf(const FaceJob<T>& job) {
+  const hn::ScalableTag<T> d;
+  const std::size_t i = FaceWhole(d, job);
   const std::size_t m = job.n - i;
   if (m == 0) return;
 
@@ -283,7 +304,11 @@ HWY_INLINE void TraceFaceOf(const FaceJob<T>& job) {
   if (job.out.refracted != nullptr) out.refracted = &refracted.arrays;
   if (job.out.reflected != nullptr) out.reflected = &reflected.arrays;
   if (job.out.reflectance != nullptr) out.reflectance = reflectance;
-  FaceOne(d, face, job, in.Fill(job.in, i, m), out, 0);
+  FaceJob<T> rest = job;
+  rest.in = in.Fill(job.in, i, m);
+  rest.n = hn::Lanes(d);
+  rest.out = out;
+  FaceWhole(d, rest);
   hit.CopyTo(job.out.hit, i, m);
   CopyTail(status, job.out.status + i, m);
   if (out.refracted != nullptr) refracted.CopyTo(*job.out.refracted, i, m, false);

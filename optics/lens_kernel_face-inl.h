@@ -31,13 +31,13 @@ struct Vec3 {
 };
 
 template <class D>
-HWY_INLINE hn::Vec<D> Dot(const Vec3<D>& a, const Vec3<D>& b) {
+LORGNETTE_KERNEL_INLINE hn::Vec<D> Dot(const Vec3<D>& a, const Vec3<D>& b) {
   return hn::MulAdd(a.x, b.x, hn::MulAdd(a.y, b.y, hn::Mul(a.z, b.z)));
 }
 
 // p + t d
 template <class D>
-HWY_INLINE Vec3<D> Along(const Vec3<D>& p, hn::Vec<D> t, const Vec3<D>& d) {
+LORGNETTE_KERNEL_INLINE Vec3<D> Along(const Vec3<D>& p, hn::Vec<D> t, const Vec3<D>& d) {
   return {hn::MulAdd(t, d.x, p.x), hn::MulAdd(t, d.y, p.y), hn::MulAdd(t, d.z, p.z)};
 }
 
@@ -56,7 +56,7 @@ inline constexpr double kFarthest_mm = 1e5;
 // Square root of x >= 0 to about a unit in the last place. In float from the machine's reciprocal
 // root and one Newton step, which takes half the time of the exact instruction.
 template <class D>
-HWY_INLINE hn::Vec<D> QuickSqrt(D d, hn::Vec<D> x) {
+LORGNETTE_KERNEL_INLINE hn::Vec<D> QuickSqrt(D d, hn::Vec<D> x) {
   using T = hn::TFromD<D>;
   if constexpr (sizeof(T) == 8) {
     return hn::Sqrt(x);
@@ -71,8 +71,8 @@ HWY_INLINE hn::Vec<D> QuickSqrt(D d, hn::Vec<D> x) {
 // The root of c t^2 - 2 b t + h = 0 for which b - c t has the sign of `sense` (+-1); `*root`
 // receives that b - c t. `*ok` is false where there is none.
 template <class D>
-HWY_INLINE hn::Vec<D> StableRoot(D d, hn::Vec<D> c, hn::Vec<D> b, hn::Vec<D> h, hn::Vec<D> sense,
-                                 hn::Vec<D>* root, hn::Mask<D>* ok) {
+LORGNETTE_KERNEL_INLINE hn::Vec<D> StableRoot(D d, hn::Vec<D> c, hn::Vec<D> b, hn::Vec<D> h,
+                                              hn::Vec<D> sense, hn::Vec<D>* root, hn::Mask<D>* ok) {
   using T = hn::TFromD<D>;
   const auto zero = hn::Zero(d);
   // b^2 - c h with one rounding (Kahan), since it cancels at grazing incidence.
@@ -99,10 +99,10 @@ struct SphereFace {
   hn::Vec<D> c, sense;
 
   template <class Params>
-  HWY_INLINE SphereFace(D tag, const Params& params, hn::TFromD<D> sign)
+  LORGNETTE_KERNEL_INLINE SphereFace(D tag, const Params& params, hn::TFromD<D> sign)
       : d(tag), c(hn::Set(tag, params.c)), sense(hn::Set(tag, sign)) {}
 
-  HWY_INLINE FaceHit<D> Intersect(const Vec3<D>& p, const Vec3<D>& dir) const {
+  LORGNETTE_KERNEL_INLINE FaceHit<D> Intersect(const Vec3<D>& p, const Vec3<D>& dir) const {
     const auto b = hn::NegMulAdd(c, Dot<D>(p, dir), dir.z);
     const auto h = hn::MulSub(c, Dot<D>(p, p), hn::Add(p.z, p.z));
     FaceHit<D> hit;
@@ -128,7 +128,7 @@ struct GeneralFace {
   Vec3<D> a, g;
   bool torus;
 
-  HWY_INLINE GeneralFace(D tag, const FaceParams<T>& f, T sign)
+  LORGNETTE_KERNEL_INLINE GeneralFace(D tag, const FaceParams<T>& f, T sign)
       : d(tag),
         c(hn::Set(tag, f.c)),
         generator2(hn::Set(tag, f.generator * f.generator)),
@@ -139,12 +139,14 @@ struct GeneralFace {
         g{hn::Set(tag, f.gx), hn::Set(tag, f.gy), hn::Set(tag, f.gz)},
         torus(f.kind == FaceKind::kTorus) {}
 
-  HWY_INLINE V AxisDot(const Vec3<D>& v) const { return kUpright ? v.z : Dot<D>(a, v); }
-  HWY_INLINE V GeneratorDot(const Vec3<D>& v) const {
+  LORGNETTE_KERNEL_INLINE V AxisDot(const Vec3<D>& v) const {
+    return kUpright ? v.z : Dot<D>(a, v);
+  }
+  LORGNETTE_KERNEL_INLINE V GeneratorDot(const Vec3<D>& v) const {
     return kUpright ? hn::MulAdd(g.x, v.x, hn::Mul(g.y, v.y)) : Dot<D>(g, v);
   }
 
-  HWY_INLINE FaceHit<D> Intersect(const Vec3<D>& p, const Vec3<D>& dir) const {
+  LORGNETTE_KERNEL_INLINE FaceHit<D> Intersect(const Vec3<D>& p, const Vec3<D>& dir) const {
     FaceHit<D> hit = torus ? IntersectTorus(p, dir) : IntersectSphere(p, dir);
     const auto near = hn::Lt(hn::Abs(hit.distance), hn::Set(d, T(kFarthest_mm)));
     hit.ok = hn::And(hit.ok, hn::And(near, hn::Gt(AxisDot(hit.normal), hn::Zero(d))));
@@ -152,7 +154,7 @@ struct GeneralFace {
   }
 
  private:
-  HWY_INLINE FaceHit<D> IntersectSphere(const Vec3<D>& p, const Vec3<D>& dir) const {
+  LORGNETTE_KERNEL_INLINE FaceHit<D> IntersectSphere(const Vec3<D>& p, const Vec3<D>& dir) const {
     const V pa = AxisDot(p);
     const V b = hn::NegMulAdd(c, Dot<D>(p, dir), AxisDot(dir));
     const V h = hn::MulSub(c, Dot<D>(p, p), hn::Add(pa, pa));
@@ -173,7 +175,7 @@ struct GeneralFace {
   };
   // By square root and division. Off the domain the slope of its last zone continues, so that
   // Newton can come back.
-  HWY_INLINE Circle CircleAt(const Vec3<D>& p) const {
+  LORGNETTE_KERNEL_INLINE Circle CircleAt(const Vec3<D>& p) const {
     const V one = hn::Set(d, 1);
     Circle s;
     s.y = GeneratorDot(p);
@@ -189,7 +191,8 @@ struct GeneralFace {
   }
   // The same from a neighbour's by one cubic iteration for each reciprocal. `defect` receives
   // 1 - w^2 r^2 of the neighbour's r: the error left is 5/16 of its cube.
-  HWY_INLINE Circle CircleNear(const Circle& neighbour, const Vec3<D>& p, V* defect) const {
+  LORGNETTE_KERNEL_INLINE Circle CircleNear(const Circle& neighbour, const Vec3<D>& p,
+                                            V* defect) const {
     const V one = hn::Set(d, 1);
     Circle s;
     s.y = GeneratorDot(p);
@@ -206,12 +209,12 @@ struct GeneralFace {
     return s;
   }
   // G / 2.
-  HWY_INLINE V ValueAt(const Vec3<D>& p, const Circle& s) const {
+  LORGNETTE_KERNEL_INLINE V ValueAt(const Vec3<D>& p, const Circle& s) const {
     const V curved = hn::MulAdd(c, Dot<D>(p, p), hn::Mul(delta, hn::MulAdd(s.sag, s.sag, s.y2)));
     return hn::NegMulAdd(hn::Set(d, T(0.5)), curved, AxisDot(p));
   }
   // N; k = delta y / w.
-  HWY_INLINE Vec3<D> NormalAt(const Vec3<D>& p, V k) const {
+  LORGNETTE_KERNEL_INLINE Vec3<D> NormalAt(const Vec3<D>& p, V k) const {
     if constexpr (kUpright) {
       return {hn::NegMulAdd(c, p.x, hn::Neg(hn::Mul(k, g.x))),
               hn::NegMulAdd(c, p.y, hn::Neg(hn::Mul(k, g.y))),
@@ -222,14 +225,14 @@ struct GeneralFace {
               hn::NegMulAdd(c, p.z, hn::NegMulAdd(k, g.z, a.z))};
     }
   }
-  HWY_INLINE Vec3<D> NormalAt(const Vec3<D>& p, const Circle& s) const {
+  LORGNETTE_KERNEL_INLINE Vec3<D> NormalAt(const Vec3<D>& p, const Circle& s) const {
     return NormalAt(p, hn::Mul(hn::Mul(delta, s.y), s.inverse));
   }
 
   static constexpr bool kDouble = sizeof(T) == 8;
   static constexpr T kResidual_mm = kDouble ? T(2e-13) : T(2e-5);
 
-  HWY_INLINE FaceHit<D> IntersectTorus(const Vec3<D>& p, const Vec3<D>& dir) const {
+  LORGNETTE_KERNEL_INLINE FaceHit<D> IntersectTorus(const Vec3<D>& p, const Vec3<D>& dir) const {
     // The last step of the fast path leaves an error of its square over a radius, and of the cube
     // of the circle's defect; lanes above these go the slow way.
     constexpr T kLastStep_mm = kDouble ? T(1e-6) : T(5e-3);
@@ -292,8 +295,8 @@ struct GeneralFace {
   }
 
   // Unit normal and cosine. On the torus |N| = (1 - c s) / w; a Newton step takes out the rest.
-  HWY_INLINE void Normalize(const Vec3<D>& n, const Circle& circle, V scale, const Vec3<D>& dir,
-                            FaceHit<D>* hit) const {
+  LORGNETTE_KERNEL_INLINE void Normalize(const Vec3<D>& n, const Circle& circle, V scale,
+                                         const Vec3<D>& dir, FaceHit<D>* hit) const {
     V k = hn::Div(hn::Mul(circle.w2, circle.inverse), scale);
     k = hn::Mul(k, hn::NegMulAdd(hn::Mul(hn::Set(d, T(0.5)), Dot<D>(n, n)), hn::Mul(k, k),
                                  hn::Set(d, T(1.5))));

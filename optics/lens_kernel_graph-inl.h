@@ -30,12 +30,13 @@ struct GraphJet {
 inline constexpr double kLeastSquaredCosine = 1e-4;
 
 template <class D>
-HWY_INLINE hn::Vec<D> RootOf(D d, hn::Vec<D> squared) {
+LORGNETTE_KERNEL_INLINE hn::Vec<D> RootOf(D d, hn::Vec<D> squared) {
   return hn::Sqrt(hn::Max(squared, hn::Set(d, hn::TFromD<D>(kLeastSquaredCosine))));
 }
 
 template <class D, class T = hn::TFromD<D>>
-HWY_INLINE GraphJet<D> ConicJet(D d, const FaceParams<T>& f, hn::Vec<D> u, hn::Vec<D> v) {
+LORGNETTE_KERNEL_INLINE GraphJet<D> ConicJet(D d, const FaceParams<T>& f, hn::Vec<D> u,
+                                             hn::Vec<D> v) {
   const auto one = hn::Set(d, 1), c = hn::Set(d, f.c);
   const auto r2 = hn::MulAdd(u, u, hn::Mul(v, v));
   GraphJet<D> jet;
@@ -61,7 +62,8 @@ HWY_INLINE GraphJet<D> ConicJet(D d, const FaceParams<T>& f, hn::Vec<D> u, hn::V
 
 // The umbilic's slope sine phi(v), its curvature and that one's derivative; see ProgressiveSurface.
 template <class D, class T = hn::TFromD<D>>
-HWY_INLINE GraphJet<D> ProgressiveJet(D d, const FaceParams<T>& f, hn::Vec<D> u, hn::Vec<D> v) {
+LORGNETTE_KERNEL_INLINE GraphJet<D> ProgressiveJet(D d, const FaceParams<T>& f, hn::Vec<D> u,
+                                                   hn::Vec<D> v) {
   const auto zero = hn::Zero(d), one = hn::Set(d, 1), half = hn::Set(d, T(0.5));
   const auto far = hn::Set(d, f.c), add = hn::Set(d, f.add);
   const auto raw = hn::Mul(hn::Sub(hn::Set(d, f.start), v), hn::Set(d, 1 / f.length));
@@ -125,7 +127,8 @@ HWY_INLINE GraphJet<D> ProgressiveJet(D d, const FaceParams<T>& f, hn::Vec<D> u,
 
 // Atoroid: a conic with a v^4 term, swept along conics across; see AtoroidSurface.
 template <class D, class T = hn::TFromD<D>>
-HWY_INLINE GraphJet<D> AtoroidJet(D d, const FaceParams<T>& f, hn::Vec<D> u, hn::Vec<D> v) {
+LORGNETTE_KERNEL_INLINE GraphJet<D> AtoroidJet(D d, const FaceParams<T>& f, hn::Vec<D> u,
+                                               hn::Vec<D> v) {
   const auto one = hn::Set(d, 1), c = hn::Set(d, f.generator), a4 = hn::Set(d, f.even[0]);
   const auto v2 = hn::Mul(v, v), u2 = hn::Mul(u, u);
   const auto room_v = hn::NegMulAdd(hn::Set(d, f.conic * f.generator * f.generator), v2, one);
@@ -151,7 +154,7 @@ template <class D>
 struct SplineBasis {
   hn::Vec<D> b[4], b1[4];
 
-  HWY_INLINE SplineBasis(D d, hn::Vec<D> u) {
+  LORGNETTE_KERNEL_INLINE SplineBasis(D d, hn::Vec<D> u) {
     using T = hn::TFromD<D>;
     const auto one = hn::Set(d, 1), two = hn::Set(d, T(2)), three = hn::Set(d, T(3));
     const auto sixth = hn::Set(d, T(1) / 6), four = hn::Set(d, T(4)), half = hn::Set(d, T(0.5));
@@ -170,7 +173,8 @@ struct SplineBasis {
 
 // Bicubic spline on a sphere. Beyond the grid the last cell goes on, without room.
 template <class D, class T = hn::TFromD<D>>
-HWY_INLINE GraphJet<D> GridJet(D d, const FaceParams<T>& f, hn::Vec<D> u, hn::Vec<D> v) {
+LORGNETTE_KERNEL_INLINE GraphJet<D> GridJet(D d, const FaceParams<T>& f, hn::Vec<D> u,
+                                            hn::Vec<D> v) {
   const auto zero = hn::Zero(d), one = hn::Set(d, 1), base = hn::Set(d, f.base);
   const auto gx = hn::Mul(hn::Sub(u, hn::Set(d, f.x0)), hn::Set(d, f.per_x));
   const auto gy = hn::Mul(hn::Sub(v, hn::Set(d, f.y0)), hn::Set(d, f.per_y));
@@ -222,10 +226,10 @@ struct AnyFace {
   const FaceParams<T>& f;
   T sign;
 
-  HWY_INLINE AnyFace(D tag, const FaceParams<T>& params, T sense)
+  LORGNETTE_KERNEL_INLINE AnyFace(D tag, const FaceParams<T>& params, T sense)
       : d(tag), f(params), sign(sense) {}
 
-  HWY_INLINE FaceHit<D> Intersect(const Vec3<D>& p, const Vec3<D>& dir) const {
+  LORGNETTE_KERNEL_INLINE FaceHit<D> Intersect(const Vec3<D>& p, const Vec3<D>& dir) const {
     if (f.kind == FaceKind::kSphere || f.kind == FaceKind::kTorus) {
       return GeneralFace<D, false>(d, f, sign).Intersect(p, dir);
     }
@@ -233,14 +237,14 @@ struct AnyFace {
   }
 
  private:
-  HWY_INLINE GraphJet<D> JetAt(V u, V v) const {
+  LORGNETTE_KERNEL_INLINE GraphJet<D> JetAt(V u, V v) const {
     if (f.kind == FaceKind::kConic) return ConicJet(d, f, u, v);
     if (f.kind == FaceKind::kAtoroid) return AtoroidJet(d, f, u, v);
     if (f.kind == FaceKind::kGrid) return GridJet(d, f, u, v);
     return ProgressiveJet(d, f, u, v);
   }
 
-  HWY_INLINE FaceHit<D> IntersectGraph(const Vec3<D>& p, const Vec3<D>& dir) const {
+  LORGNETTE_KERNEL_INLINE FaceHit<D> IntersectGraph(const Vec3<D>& p, const Vec3<D>& dir) const {
     constexpr int kMaxSteps = 20;
     constexpr T kResidual_mm = sizeof(T) == 8 ? T(2e-13) : T(2e-5);
     const V zero = hn::Zero(d), one = hn::Set(d, 1), c = hn::Set(d, f.c), sense = hn::Set(d, sign);

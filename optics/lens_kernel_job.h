@@ -7,6 +7,14 @@
 
 #include "optics/lens_kernel.h"
 
+// The kernel is inlined whole into its loops: a call would pass every vector through memory. The
+// sanitizers guard each of those accesses, and thousands of inlined ones take minutes to compile.
+#ifdef __SANITIZE_ADDRESS__
+#define LORGNETTE_KERNEL_INLINE inline
+#else
+#define LORGNETTE_KERNEL_INLINE HWY_INLINE
+#endif
+
 namespace lorgnette::kernel {
 
 enum class FaceKind { kSphere, kTorus, kConic, kProgressive, kAtoroid, kGrid };

@@ -20,9 +20,9 @@ namespace lorgnette {
 
 // Where a ray meets the surface.
 struct SurfaceHit {
-  double distance = 0;     // along the ray, mm; may be negative (surface behind the origin)
-  Eigen::Vector3d point;   // mm, in the surface's frame
-  Eigen::Vector3d normal;  // unit, toward +z
+  double distance = 0;              // along the ray, mm; may be negative (behind the origin)
+  Eigen::Vector3d point{0, 0, 0};   // mm, in the surface's frame
+  Eigen::Vector3d normal{0, 0, 0};  // unit, toward +z
 };
 
 class Surface {

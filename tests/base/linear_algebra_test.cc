@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include <numbers>
+#include <random>
 
 namespace lorgnette {
 namespace {
@@ -18,6 +19,31 @@ TEST(SymmetricEigenvaluesTest, AreThoseOfARotatedDiagonal) {
     EXPECT_NEAR(values[0], -3, 3 * kUlps);
     EXPECT_NEAR(values[1], 0.5, 3 * kUlps);
   }
+}
+
+TEST(LeastSquaresTest, FindsAKnownSolutionAndLeavesARemainderAcrossTheColumns) {
+  std::mt19937 random(3);
+  std::normal_distribution<double> normal;
+  for (const Eigen::Index n : {1, 2, 3, 6}) {
+    Eigen::MatrixXd a(40, n);
+    Eigen::VectorXd known(n), off(40);
+    for (double& v : a.reshaped()) v = normal(random);
+    for (double& v : known) v = normal(random);
+    for (double& v : off) v = normal(random);
+    // Columns of random numbers have a condition number of at most 3 or so; 40 additions a sum.
+    const double rounding = 3 * 40 * kUlps * a.norm();
+    EXPECT_LT((LeastSquares(a, a * known) - known).norm(), rounding);
+    const Eigen::VectorXd remainder = a * LeastSquares(a, off) - off;
+    EXPECT_LT((a.transpose() * remainder).norm(), rounding * off.norm());
+  }
+}
+
+TEST(LeastSquaresTest, TakesTheShortestOfManySolutions) {
+  // Twice the same column, and one of zeros.
+  Eigen::MatrixXd a(5, 4);
+  a << 1, 1, 0, 2, 1, 1, 0, -1, 1, 1, 0, 3, 1, 1, 0, 0, 1, 1, 0, 5;
+  const Eigen::VectorXd x = LeastSquares(a, a * Eigen::Vector4d(3, 1, 7, -2));
+  EXPECT_LT((x - Eigen::Vector4d(2, 2, 0, -2)).norm(), 40 * kUlps);
 }
 
 TEST(ShortestTurnTest, TakesOneDirectionToTheOtherAndLeavesTheAxis) {

@@ -37,6 +37,8 @@ export function costSection(wanted: () => boolean): HTMLElement {
   let chosen = 0; // index into the points by rising time
   const status = h("p", { class: "hint", role: "status" });
   const study = h("select", { id: uniqueId("cost"), onchange: () => chooseStudy() });
+  // The box cuts a long title where the page is narrow: there it stands in full below.
+  const whole = h("p", { class: "cost-study" });
   const unit = h("select", { id: uniqueId("cost"), onchange: () => draw() });
   const budget = h("input", { id: uniqueId("cost"), type: "range", min: 0, max: 100, value: 50,
     oninput: () => draw() });
@@ -53,10 +55,12 @@ export function costSection(wanted: () => boolean): HTMLElement {
     h("thead", {}, h("tr", {}, h("th", { scope: "col" }, t("cost.method")), headTime, headUnit,
       h("th", { scope: "col" }, t("cost.front")))),
     rows));
-  const labelled = (key: "cost.study" | "cost.unit", box: HTMLSelectElement): HTMLElement =>
-    h("div", { class: "field" }, h("label", { for: box.id }, t(key)), box);
+  const labelled = (key: "cost.study" | "cost.unit", box: HTMLSelectElement,
+    ...below: HTMLElement[]): HTMLElement =>
+    h("div", { class: "field" }, h("label", { for: box.id }, t(key)), box, ...below);
   const body = h("div", { class: "cost-body", hidden: true },
-    h("div", { class: "compare-controls" }, labelled("cost.study", study), labelled("cost.unit", unit),
+    h("div", { class: "compare-controls" }, labelled("cost.study", study, whole),
+      labelled("cost.unit", unit),
       h("div", { class: "field" }, h("label", { for: budget.id }, t("cost.budget")), budget, budgetOut)),
     advice, plot, told, table);
   const root = h("section", { class: "card cost" }, h("h2", {}, t("cost.title")),
@@ -66,7 +70,8 @@ export function costSection(wanted: () => boolean): HTMLElement {
   const sorted = (): CostPoint[] => [...current().points].sort((a, b) => a.time - b.time);
 
   function chooseStudy(): void {
-    const { error_units, error_descriptions } = current();
+    const { title, error_units, error_descriptions } = current();
+    setText(whole, title);
     unit.replaceChildren(...error_units.map((u, i) => h("option", { value: u },
       error_descriptions?.[i] ? `${u}: ${error_descriptions[i]}` : u)));
     chosen = Math.max(0, sorted().findIndex((p) => p.front));

@@ -14,7 +14,7 @@ import { formula } from "../ui/formula";
 
 // Numbers of the cases in validation/cases, by the number that they back.
 export const CASES: Record<string, string[]> = {
-  backVertex: ["V001", "V002", "V003", "V041", "V042"],
+  backVertex: ["V001", "V002", "V003", "V041", "V042", "V105"],
   frontVertex: ["V003", "V041"],
   equivalent: ["V003", "V041", "V034"],
   frontSurface: ["V022"],
@@ -27,9 +27,9 @@ export const CASES: Record<string, string[]> = {
   light: ["V024"],
   wearer: ["V004", "V005"],
   observer: ["V043", "V048"],
-  worn: ["V012", "V049", "V006", "V011"],
-  made: ["V012", "V049"],
-  certificate: ["V026", "V033"],
+  worn: ["V012", "V049", "V051", "V006", "V011"],
+  made: ["V105", "V012", "V049"],
+  certificate: ["V105", "V026", "V033"],
 };
 
 export interface Explanation {
@@ -119,7 +119,7 @@ export function explanations(order: Order, sheet: Sheet, worn: Worn): Explanatio
       steps: [
         "F{n} = F{2} / (1 − τ F{2}) + F{1}",
         ...each((v) => [
-          `F{n} = ${p(v.f2)} / (1 − ${tauText} · (${p(v.f2)})) + ${p(v.f1)} = ${signed(v.fn, 6)} D`,
+          `F{n} = ${p(v.f2)} / (1 − ${tauText} · (${p(v.f2)})) + (${p(v.f1)}) = ${signed(v.fn, 6)} D`,
         ]),
       ],
     },
