@@ -12,15 +12,14 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-Json Number(double value) { return std::isfinite(value) ? Json(value) : Json(nullptr); }
-Json Pair(const MeridianPair& pair) { return {Number(pair.along), Number(pair.across)}; }
+Json Pair(const MeridianPair& pair) { return {JsonNumber(pair.along), JsonNumber(pair.across)}; }
 
 Json CardinalJson(const std::optional<CardinalPoints>& points) {
   if (!points) return nullptr;
-  return {{"front_focal_mm", Number(points->front_focal_mm)},
-          {"back_focal_mm", Number(points->back_focal_mm)},
-          {"front_principal_mm", Number(points->front_principal_mm)},
-          {"back_principal_mm", Number(points->back_principal_mm)}};
+  return {{"front_focal_mm", JsonNumber(points->front_focal_mm)},
+          {"back_focal_mm", JsonNumber(points->back_focal_mm)},
+          {"front_principal_mm", JsonNumber(points->front_principal_mm)},
+          {"back_principal_mm", JsonNumber(points->back_principal_mm)}};
 }
 
 Json OrderJson(const LensOrder& order) {
@@ -42,24 +41,26 @@ Json OrderJson(const LensOrder& order) {
 
 }  // namespace
 
+Json JsonNumber(double value) { return std::isfinite(value) ? Json(value) : Json(nullptr); }
+
 Json LensJson(const LensDesign& design, const LensSheet& sheet) {
   Json json;
   json["eye"] = design.order.eye == Eye::kRight ? "right" : "left";
   json["order"] = OrderJson(design.order);
-  json["back_vertex_power_D"] = Number(sheet.back_vertex_power_D.along);
-  json["front_vertex_power_D"] = Number(sheet.front_vertex_power_D.along);
-  json["equivalent_power_D"] = Number(sheet.equivalent_power_D.along);
-  json["front_power_D"] = Number(sheet.front_power_D.along);
-  json["back_power_D"] = Number(sheet.back_power_D.along);
-  json["radius_front_mm"] = Number(sheet.radius_front_mm.along);
+  json["back_vertex_power_D"] = JsonNumber(sheet.back_vertex_power_D.along);
+  json["front_vertex_power_D"] = JsonNumber(sheet.front_vertex_power_D.along);
+  json["equivalent_power_D"] = JsonNumber(sheet.equivalent_power_D.along);
+  json["front_power_D"] = JsonNumber(sheet.front_power_D.along);
+  json["back_power_D"] = JsonNumber(sheet.back_power_D.along);
+  json["radius_front_mm"] = JsonNumber(sheet.radius_front_mm.along);
   json["radii_front_mm"] = Pair(sheet.radius_front_mm);
   json["radii_back_mm"] = Pair(sheet.radii_back_mm);
   json["center_thickness_mm"] = sheet.center_thickness_mm;
-  json["edge_thickness_mm"] = Number(sheet.edge_thickness_max_mm);
-  json["edge_thickness_min_mm"] = Number(sheet.edge_thickness_min_mm);
-  json["mass_g"] = Number(sheet.mass_g);
-  json["min_blank_mm"] = Number(sheet.min_blank_mm);
-  json["spectacle_magnification"] = Number(sheet.spectacle_magnification.along);
+  json["edge_thickness_mm"] = JsonNumber(sheet.edge_thickness_max_mm);
+  json["edge_thickness_min_mm"] = JsonNumber(sheet.edge_thickness_min_mm);
+  json["mass_g"] = JsonNumber(sheet.mass_g);
+  json["min_blank_mm"] = JsonNumber(sheet.min_blank_mm);
+  json["spectacle_magnification"] = JsonNumber(sheet.spectacle_magnification.along);
   // Along the cylinder axis, and across it; equal for a sphere.
   json["meridians"] = {{"back_vertex_power_D", Pair(sheet.back_vertex_power_D)},
                        {"front_vertex_power_D", Pair(sheet.front_vertex_power_D)},
@@ -81,11 +82,11 @@ Json CertificateJson(const Certificate& certificate) {
   for (const Measurement& m : certificate.measurements) {
     rows.push_back({{"quantity", m.quantity},
                     {"unit", m.unit},
-                    {"predicted", Number(m.ordered)},
-                    {"measured", Number(m.measured)},
-                    {"difference", Number(m.measured - m.ordered)},
-                    {"tolerance", Number(m.tolerance)},
-                    {"numerical_error", Number(m.numerical_error)},
+                    {"predicted", JsonNumber(m.ordered)},
+                    {"measured", JsonNumber(m.measured)},
+                    {"difference", JsonNumber(m.measured - m.ordered)},
+                    {"tolerance", JsonNumber(m.tolerance)},
+                    {"numerical_error", JsonNumber(m.numerical_error)},
                     {"passed", m.passed()},
                     {"source", m.source},
                     {"backed_by", validation::CasesBacking(m.quantity)}});

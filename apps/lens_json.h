@@ -10,6 +10,9 @@
 
 namespace lorgnette {
 
+// The number, or null where it is not finite.
+nlohmann::ordered_json JsonNumber(double value);
+
 // Order, surfaces, powers, thicknesses, mass and magnification of one lens.
 nlohmann::ordered_json LensJson(const LensDesign& design, const LensSheet& sheet);
 

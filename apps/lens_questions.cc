@@ -25,8 +25,6 @@ using Json = nlohmann::ordered_json;
 constexpr double kMaxTheta_deg = 60, kMaxPhi_deg = 360;
 constexpr double kFarthest_mm = 1e9;
 
-Json Number(double value) { return std::isfinite(value) ? Json(value) : Json(nullptr); }
-
 Status CheckPositive(const char* name, double value) {
   if (value > 0 && value <= kFarthest_mm) return {};
   return UsageError(
@@ -108,7 +106,7 @@ Status AddMap(const LensQuestions& q, const Lens& lens, Json& json) {
 // The wearer's own, with the entrance pupil at the depth asked about.
 void PutPupilAt(double depth_mm, const LensDesign& design, const LensSheet& sheet, Json& json) {
   const auto at = [&](double front, double back) {
-    return Number(SpectacleMagnification(
+    return JsonNumber(SpectacleMagnification(
         ParaxialSystem::ThickLens(Diopters(front), Diopters(back), sheet.center_thickness_mm,
                                   design.lens.medium.index_d),
         depth_mm));
@@ -214,10 +212,10 @@ Result<Json> AnsweredJson(const MadeLens& made, const LensOptions& options,
     json["camera_mm"] = request.observer.camera_mm;
     json["depth_mm"] = request.observer.depth_mm;
     json["height_mm"] = request.feature_height_mm;
-    json["observer_magnification_thin"] = Number(sheet.observer_magnification_thin);
-    json["observer_magnification_paraxial"] = Number(sheet.observer_magnification_paraxial);
+    json["observer_magnification_thin"] = JsonNumber(sheet.observer_magnification_thin);
+    json["observer_magnification_paraxial"] = JsonNumber(sheet.observer_magnification_paraxial);
     json["observer_magnification_exact"] =
-        Number(sheet.observer_magnification_exact.value_or(HUGE_VAL));
+        JsonNumber(sheet.observer_magnification_exact.value_or(HUGE_VAL));
   }
   if (q.depth_mm) PutPupilAt(*q.depth_mm, design, sheet, json);
   json["pupil_mm"] = q.depth_mm.value_or(sheet.pupil_mm);
@@ -232,7 +230,7 @@ Result<Json> AnsweredJson(const MadeLens& made, const LensOptions& options,
       {"filter_category", light.filter_category ? Json(*light.filter_category) : Json(nullptr)},
       {"reflectance", light.reflectance},
       {"reflection_chromaticity", {light.reflection_x, light.reflection_y}},
-      {"ghost_power_D", Number(light.ghost_power_D)},
+      {"ghost_power_D", JsonNumber(light.ghost_power_D)},
       {"ghost_intensity", light.ghost_intensity}};
   return json;
 }

@@ -219,7 +219,7 @@ ImageRgb8 Beside(const ImageRgb8& left, const ImageRgb8& right) {
 }
 
 // One frame on its way through the pipeline.
-struct Job {
+struct FrameJob {
   VideoFrame frame;
   const TrackedFrame* tracked = nullptr;
   ImageRgb8 input;  // as read, of stills that show it
@@ -249,21 +249,22 @@ class Assembly {
     const auto isolated = [](auto&& work) { return tbb::this_task_arena::isolate(work); };
     tbb::parallel_pipeline(
         kFramesInFlight,
-        tbb::make_filter<void, std::shared_ptr<Job>>(tbb::filter_mode::serial_in_order,
-                                                     [&](tbb::flow_control& control) {
-                                                       auto job = isolated([&] { return Read(); });
-                                                       if (job == nullptr) control.stop();
-                                                       return job;
-                                                     }) &
-            tbb::make_filter<std::shared_ptr<Job>, std::shared_ptr<Job>>(
+        tbb::make_filter<void, std::shared_ptr<FrameJob>>(tbb::filter_mode::serial_in_order,
+                                                          [&](tbb::flow_control& control) {
+                                                            auto job =
+                                                                isolated([&] { return Read(); });
+                                                            if (job == nullptr) control.stop();
+                                                            return job;
+                                                          }) &
+            tbb::make_filter<std::shared_ptr<FrameJob>, std::shared_ptr<FrameJob>>(
                 tbb::filter_mode::serial_in_order,
-                [&](std::shared_ptr<Job> job) {
+                [&](std::shared_ptr<FrameJob> job) {
                   isolated([&] { Render(*job); });
                   return job;
                 }) &
-            tbb::make_filter<std::shared_ptr<Job>, void>(
+            tbb::make_filter<std::shared_ptr<FrameJob>, void>(
                 tbb::filter_mode::serial_in_order,
-                [&](const std::shared_ptr<Job>& job) { isolated([&] { Write(*job); }); }));
+                [&](const std::shared_ptr<FrameJob>& job) { isolated([&] { Write(*job); }); }));
     if (!status_) return status_;
     if (result_.frames == 0) {
       return UsageError(fmt::format("--frames: {} has only {} frames", request_.video, number_));
@@ -275,14 +276,14 @@ class Assembly {
 
  private:
   // The next frame of the range; nullptr at the end, or after an error.
-  std::shared_ptr<Job> Read() {
+  std::shared_ptr<FrameJob> Read() {
     const Timer timer(result_.seconds.read);
     while (!failed_ && number_ <= request_.frames.last) {
       auto frame = reader_.Next();
       if (!frame) return Fail(frame.error());
       if (!*frame) return nullptr;
       if (!request_.frames.Contains(number_++)) continue;
-      auto job = std::make_shared<Job>();
+      auto job = std::make_shared<FrameJob>();
       job->frame = **std::move(frame);
       job->tracked = lookup_.At(job->frame.time_s);
       if (job->tracked == nullptr) {
@@ -295,7 +296,7 @@ class Assembly {
     return nullptr;
   }
 
-  void Render(Job& job) {
+  void Render(FrameJob& job) {
     if (!job.tracked->found || failed_) return;
     const Timer timer(result_.seconds.render);
     if (!job.tracked->vertices.empty()) {
@@ -351,7 +352,7 @@ class Assembly {
     }
   }
 
-  void Write(Job& job) {
+  void Write(FrameJob& job) {
     if (failed_) return;
     const Timer timer(result_.seconds.write);
     if (const Status written = writer_.Write(job.frame); !written) {
@@ -364,12 +365,12 @@ class Assembly {
     progress_.Update(result_.frames);
   }
 
-  bool IsStill(const Job& job) const {
+  bool IsStill(const FrameJob& job) const {
     const long index = job.tracked - track_.frames.data();
     return std::find(chosen_.begin(), chosen_.end(), index) != chosen_.end();
   }
 
-  void KeepStill(const Job& job) {
+  void KeepStill(const FrameJob& job) {
     const std::filesystem::path output(request_.output);
     const std::string name = fmt::format("{}_still_{:04d}.png", output.stem().string(),
                                          static_cast<int>(stills_.size()) + 1);
