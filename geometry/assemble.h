@@ -19,9 +19,9 @@ inline constexpr double kBaseStep_D = 0.5;  // how far apart the base curves of 
 inline constexpr int kMostBaseSteps = 4;
 struct EyewearOptions {
   Medium medium;
-  // Of the right and the left lens; by rule when absent, and then nearer to the rims' curve in steps of
-  // kBaseStep_D, both lenses alike, where a bevel would miss its groove: the least change after
-  // which none does, or, up to kMostBaseSteps, the one that leaves least. A note says so.
+  // Of the right and the left lens; by rule when absent, and then nearer to the rims' curve in
+  // steps of kBaseStep_D, both lenses alike, where a bevel would miss its groove: the least change
+  // after which none does, or, up to kMostBaseSteps, the one that leaves least. A note says so.
   std::array<std::optional<Diopters>, 2> base_curves;
   std::optional<double> center_thickness_mm;  // by rule when absent
   double min_center_thickness_mm = 1.5, min_edge_thickness_mm = 1.0;
