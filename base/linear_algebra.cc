@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "base/linear_algebra.h"
 
+#include <Eigen/Cholesky>
 #include <cmath>
 #include <limits>
 
@@ -12,6 +13,12 @@ Eigen::Vector2d SymmetricEigenvalues(const Eigen::Matrix2d& m) {
   const double mean = 0.5 * (m(0, 0) + m(1, 1));
   const double half = std::hypot(0.5 * (m(0, 0) - m(1, 1)), 0.5 * (m(0, 1) + m(1, 0)));
   return {mean - half, mean + half};
+}
+
+Eigen::MatrixXd SolveSymmetric(const Eigen::MatrixXd& a, const Eigen::MatrixXd& b) {
+  LG_CHECK_EQ(a.rows(), a.cols());
+  LG_CHECK_EQ(a.rows(), b.rows());
+  return a.ldlt().solve(b);
 }
 
 Eigen::VectorXd LeastSquares(const Eigen::MatrixXd& a, const Eigen::VectorXd& b) {

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Closed forms of small problems for which Eigen brings its general solvers along.
+// Small problems of linear algebra: closed forms, and Eigen's solvers compiled once, not for every
+// size and caller.
 #pragma once
 
 #include <Eigen/Core>
@@ -9,6 +10,11 @@ namespace lorgnette {
 
 // The smaller and the greater eigenvalue of a symmetric matrix.
 Eigen::Vector2d SymmetricEigenvalues(const Eigen::Matrix2d& m);
+
+// The x of a x = b, a column for each of `b`, for a symmetric, positive semidefinite `a`: normal
+// equations, say. Of a singular one, some x; not a number where `a` is not. Method: LDL^T with
+// pivots (Eigen).
+Eigen::MatrixXd SolveSymmetric(const Eigen::MatrixXd& a, const Eigen::MatrixXd& b);
 
 // The x that makes |a x - b| least, and of several the shortest: columns of `a` that depend on the
 // others within a few roundings do not count. For few unknowns; `a` has no fewer rows than columns.

@@ -50,12 +50,12 @@ if(LORGNETTE_PCH)
   find_package(Eigen3 REQUIRED)
   find_package(fmt REQUIRED)
   file(CONFIGURE OUTPUT "${PROJECT_BINARY_DIR}/precompiled.cc" CONTENT "")  # keeps an old one
+  set(LORGNETTE_PCH_HEADERS <algorithm> <cmath> <functional> <memory> <optional> <string> <vector>
+                            <Eigen/Geometry> <fmt/format.h> <tl/expected.hpp>)
   foreach(kind library tests)
     add_library(lorgnette_pch_${kind} OBJECT "${PROJECT_BINARY_DIR}/precompiled.cc")
     target_link_libraries(lorgnette_pch_${kind} PRIVATE Eigen3::Eigen fmt::fmt lorgnette_options)
-    target_precompile_headers(lorgnette_pch_${kind} PRIVATE <algorithm> <cmath> <functional>
-                              <memory> <optional> <string> <vector> <Eigen/Geometry>
-                              <fmt/format.h> <tl/expected.hpp>)
+    target_precompile_headers(lorgnette_pch_${kind} PRIVATE ${LORGNETTE_PCH_HEADERS})
   endforeach()
   if(LORGNETTE_TESTS)
     target_link_libraries(lorgnette_pch_tests PRIVATE GTest::gmock)

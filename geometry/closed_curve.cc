@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "geometry/closed_curve.h"
 
-#include <Eigen/Dense>
 #include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
 #include <limits>
 
 #include "base/check.h"
+#include "base/linear_algebra.h"
 
 namespace lorgnette {
 namespace {
@@ -164,7 +164,7 @@ ClosedSpline FitClosedSpline(const Polygon2& polygon, int count) {
       right.row(row) += w[a] * even[std::size_t(i)].transpose();
     }
   }
-  const Eigen::MatrixX2d solution = normal.ldlt().solve(right);
+  const Eigen::MatrixX2d solution = SolveSymmetric(normal, right);
   Polygon2 control(static_cast<std::size_t>(count));
   for (int k = 0; k < count; ++k) control[std::size_t(k)] = solution.row(k).transpose();
   return ClosedSpline(std::move(control));

@@ -3,12 +3,13 @@
 
 #include <fmt/format.h>
 
-#include <Eigen/Dense>
+#include <Eigen/Core>
 #include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
 #include <limits>
 
+#include "base/linear_algebra.h"
 #include "base/units.h"
 #include "geometry/closed_curve.h"
 #include "geometry/lens_mesh.h"
@@ -120,14 +121,14 @@ Seat SeatFollowing(const EdgeHeights& edge, const std::vector<double>& groove, d
 // Curvature of the sphere that heights along a contour lie on, wherever its axis is: d of
 // z = a + b x + c y + d (x^2 + y^2) / 2.
 double CurvatureAlong(const std::vector<Eigen::Vector2d>& contour, const std::vector<double>& z) {
-  Eigen::MatrixX4d system(Eigen::Index(contour.size()), 4);
+  Eigen::MatrixXd system(Eigen::Index(contour.size()), 4);
   Eigen::VectorXd right(Eigen::Index(contour.size()));
   for (std::size_t k = 0; k < contour.size(); ++k) {
     const Eigen::Vector2d& p = contour[k];
     system.row(Eigen::Index(k)) << 1, p.x(), p.y(), p.squaredNorm() / 2;
     right[Eigen::Index(k)] = z[k];
   }
-  return system.completeOrthogonalDecomposition().solve(right)[3];
+  return LeastSquares(system, right)[3];
 }
 
 // What keeps a bevel from its groove: another curve, or an optical centre beside the middle, since

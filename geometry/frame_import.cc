@@ -3,7 +3,7 @@
 
 #include <fmt/format.h>
 
-#include <Eigen/Dense>
+#include <Eigen/LU>
 #include <algorithm>
 #include <cctype>
 #include <cmath>
@@ -11,6 +11,7 @@
 #include <map>
 #include <numeric>
 
+#include "base/linear_algebra.h"
 #include "base/units.h"
 #include "geometry/closed_curve.h"
 #include "geometry/contour.h"
@@ -380,7 +381,8 @@ class Importer {
       for (const Eigen::Vector3i& t : part.mesh.triangles) {
         // Corners and points between them: long triangles reach over many slices.
         for (int step = 0; step < 27; ++step) {
-          Eigen::Vector3d w(step % 3, step / 3 % 3, step / 9);
+          const int thirds[3] = {step % 3, step / 3 % 3, step / 9};
+          Eigen::Vector3d w(thirds[0], thirds[1], thirds[2]);
           if (w.sum() == 0) continue;
           w /= w.sum();
           Eigen::Vector3d p(0, 0, 0);
@@ -423,7 +425,7 @@ class Importer {
         normal += row * row.transpose();
         right += row * slice.y;
       }
-      const Eigen::Vector2d fit = normal.ldlt().solve(right);
+      const Eigen::Vector2d fit = SolveSymmetric(normal, right);
       std::size_t bend = line.size() - 1;
       for (std::size_t i = 0; i < line.size(); ++i) {
         const bool far = front_z_ - line[i].z > 70;

@@ -35,11 +35,12 @@ OnePower Solve(const FilmStack& stack, double wavelength_nm, double cos_incident
   const Complex before = Admittance(n0, n0 * cos_incident, s);
   const Complex after = Admittance(stack.index_after, NormalIndex(stack.index_after, conserved), s);
   Complex b = 1, c = after;
-  for (auto layer = stack.layers.rbegin(); layer != stack.layers.rend(); ++layer) {
-    const Complex index(layer->index, -layer->extinction);
+  for (std::size_t k = stack.layers.size(); k-- > 0;) {
+    const FilmLayer& layer = stack.layers[k];
+    const Complex index(layer.index, -layer.extinction);
     const Complex normal = NormalIndex(index, conserved);
     const Complex eta = Admittance(index, normal, s);
-    const Complex phase = 2 * kPi * layer->thickness_nm / wavelength_nm * normal;
+    const Complex phase = 2 * kPi * layer.thickness_nm / wavelength_nm * normal;
     const Complex co = std::cos(phase), si = Complex(0, 1) * std::sin(phase);
     const Complex next_b = co * b + si / eta * c;
     c = si * eta * b + co * c;

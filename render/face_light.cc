@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "render/face_light.h"
 
-#include <Eigen/Cholesky>
 #include <algorithm>
 #include <cmath>
 
+#include "base/linear_algebra.h"
 #include "base/units.h"
 #include "render/directions.h"
 #include "render/picture_view.h"
@@ -101,7 +101,7 @@ std::optional<FaceLight> FitFaceLight(const ImageRgbF& input, const Camera& came
       total += weight[i];
     }
     for (int k = 0; k < kTerms; ++k) normal(k, k) += total * kSmoothness[DegreeOf(k)];
-    fit = normal.ldlt().solve(right);
+    fit = SolveSymmetric(normal, right);
     // Errors beyond twice the median count less (Huber).
     std::vector<double> errors;
     double mean = 0, squares = 0;

@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "tracking/face_model.h"
 
-#include <Eigen/Cholesky>
 #include <Eigen/Geometry>
 #include <Eigen/SVD>
 #include <algorithm>
 #include <cmath>
 
 #include "base/check.h"
+#include "base/linear_algebra.h"
 #include "base/units.h"
 
 namespace lorgnette {
@@ -185,7 +185,7 @@ std::vector<Eigen::Vector3d> ShapeFromLandmarks(const Camera& camera,
         normal += w * by_point.transpose() * by_point;
         right += w * by_point.transpose() * error;
       }
-      head[i] += normal.ldlt().solve(right);
+      head[i] += SolveSymmetric(normal, right);
     }
   }
   return head;

@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "tracking/iris.h"
 
-#include <Eigen/Cholesky>
 #include <algorithm>
 #include <array>
 #include <cmath>
 
+#include "base/linear_algebra.h"
 #include "base/units.h"
 
 namespace lorgnette {
@@ -117,7 +117,7 @@ bool FitRim(const IrisPlane& plane, Best& best) {
       ++votes;
     }
     if (votes < kRays) return false;
-    const Eigen::Vector3d move = normal.ldlt().solve(right);
+    const Eigen::Vector3d move = SolveSymmetric(normal, right);
     best.x += move.x();
     best.y += move.y();
     best.radius += move.z();

@@ -1,8 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "tracking/pose_fit.h"
 
-#include <Eigen/Cholesky>
 #include <cmath>
+
+#include "base/linear_algebra.h"
 
 namespace lorgnette {
 namespace {
@@ -78,7 +79,7 @@ PoseFit FitPose(const Camera& camera, const std::vector<PointSighting>& sighting
     Matrix6d damped = eq.normal;
     damped.diagonal() *= 1 + damping;
     damped.diagonal().array() += 1e-12;
-    const Vector6d motion = damped.ldlt().solve(eq.right);
+    const Vector6d motion = SolveSymmetric(damped, eq.right);
     if (!motion.allFinite()) break;
     const Eigen::Isometry3d next = Moved(fit.camera_from_head, motion);
     Equations tried = Linearise(camera, sightings, next, scale_px);

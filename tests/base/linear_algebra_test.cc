@@ -21,6 +21,26 @@ TEST(SymmetricEigenvaluesTest, AreThoseOfARotatedDiagonal) {
   }
 }
 
+TEST(SolveSymmetricTest, FindsAKnownSolutionOfNormalEquations) {
+  std::mt19937 random(4);
+  std::normal_distribution<double> normal;
+  for (const Eigen::Index n : {1, 2, 3, 6, 30}) {
+    Eigen::MatrixXd rows(4 * n, n), known(n, 2);
+    for (double& v : rows.reshaped()) v = normal(random);
+    for (double& v : known.reshaped()) v = normal(random);
+    const Eigen::MatrixXd a = rows.transpose() * rows;
+    // The square of the rows' condition number, of at most 9 or so.
+    EXPECT_LT((SolveSymmetric(a, a * known) - known).norm(),
+              9 * double(4 * n) * kUlps * known.norm());
+  }
+}
+
+TEST(SolveSymmetricTest, SolvesWhatASingularSystemAllows) {
+  const Eigen::Matrix2d a{{1, 1}, {1, 1}};
+  const Eigen::Vector2d x = SolveSymmetric(a, Eigen::Vector2d(2, 2));
+  EXPECT_NEAR(x.sum(), 2, 4 * kUlps);
+}
+
 TEST(LeastSquaresTest, FindsAKnownSolutionAndLeavesARemainderAcrossTheColumns) {
   std::mt19937 random(3);
   std::normal_distribution<double> normal;
