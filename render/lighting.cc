@@ -16,7 +16,7 @@ namespace {
 
 // Points of a packet of origins off their surface, so that float rounding never hides a point
 // from itself.
-constexpr float kLift_mm = 0.05f;
+constexpr float kOffSkin_mm = 0.05f;
 
 }  // namespace
 
@@ -47,7 +47,7 @@ BakedIrradiance BakedIrradiance::Bake(const EmbreeScene& scene,
   const float solid_angle = float(4 * kPi) / float(directions);
   tbb::parallel_for(std::size_t(0), points.size(), [&](std::size_t i) {
     const SurfacePoint& p = points[i];
-    const Eigen::Vector3f origin = p.position + kLift_mm * p.normal;
+    const Eigen::Vector3f origin = p.position + kOffSkin_mm * p.normal;
     Harmonics& transfer = baked.transfer_[i];
     transfer.fill(0);
     float head = 0, total = 0;

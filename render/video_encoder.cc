@@ -13,7 +13,6 @@ extern "C" {
 #include <cstring>
 #include <limits>
 
-#include "render/video_pixels.h"
 
 namespace lorgnette {
 namespace {
@@ -113,7 +112,9 @@ Status VideoEncoder::OpenCodec() {
   }
   const av::ColourReading reading{av::MatrixOf(source_.matrix, source_.width, source_.height),
                                   full_range, source_.chroma_location != AVCHROMA_LOC_CENTER};
-  LG_ASSIGN(from_rgb_, av::ScalerFromRgb(source_.width, source_.height, codec_->pix_fmt, reading));
+  LG_ASSIGN(PlanesFromRgb from_rgb,
+            PlanesFromRgb::Create(source_.width, source_.height, codec_->pix_fmt, reading));
+  from_rgb_ = std::move(from_rgb);
   return {};
 }
 
@@ -165,10 +166,11 @@ Status VideoEncoder::Write(const VideoFrame& frame) {
   if (av_frame_get_buffer(picture.get(), 0) < 0) {
     return Failure(file_.final_path() + ": no memory for a frame");
   }
-  FillFromRgb(turned, from_rgb_.get(), *picture);
   if (frame.original != nullptr) {
     const ImageRgb8& decoded = stored(frame.original->rgb, decoded_copy);
-    RestoreUntouched(turned, decoded, *frame.original->frame, *picture);
+    from_rgb_->FillEdited(turned, decoded, *frame.original->frame, *picture);
+  } else {
+    from_rgb_->Fill(turned, *picture);
   }
   picture->color_range = source_.range;
   picture->colorspace = source_.matrix;

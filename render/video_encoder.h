@@ -4,11 +4,13 @@
 
 #include <map>
 #include <memory>
+#include <optional>
 #include <string>
 
 #include "base/atomic_file.h"
 #include "render/video_av.h"
 #include "render/video_io.h"
+#include "render/video_pixels.h"
 #include "render/video_sound.h"
 
 namespace lorgnette {
@@ -53,7 +55,7 @@ class VideoEncoder {
   AVFormatContext* output_ = nullptr;
   AVStream* stream_ = nullptr;
   av::Codec codec_;
-  av::Scaler from_rgb_;
+  std::optional<PlanesFromRgb> from_rgb_;
   av::Packet packet_;
   std::unique_ptr<SoundCopier> sound_;
   bool started_ = false;

@@ -68,6 +68,55 @@ void RestorePlane(const Touched& touched, int log2_w, int log2_h, int sample_byt
   }
 }
 
+void RestorePlanes(const Touched& touched, const AVFrame& original, AVFrame& frame) {
+  const AVPixFmtDescriptor* description = av_pix_fmt_desc_get(AVPixelFormat(frame.format));
+  bool plane_done[4] = {};
+  for (int i = 0; i < description->nb_components; ++i) {
+    const AVComponentDescriptor& component = description->comp[i];
+    const int plane = component.plane;
+    if (plane_done[plane]) continue;  // NV12 keeps both chroma components in one
+    plane_done[plane] = true;
+    const bool chroma = i == 1 || i == 2;
+    RestorePlane(touched, chroma ? description->log2_chroma_w : 0,
+                 chroma ? description->log2_chroma_h : 0, component.step, original.data[plane],
+                 original.linesize[plane], frame.data[plane], frame.linesize[plane]);
+  }
+}
+
+bool CanRestore(const ImageRgb8& edited, const ImageRgb8& decoded, const AVFrame& original,
+                const AVFrame& frame) {
+  bool full_range = false;
+  const AVPixelFormat format = av::PlainFormat(frame.format, &full_range);
+  const AVPixFmtDescriptor* description = av_pix_fmt_desc_get(format);
+  return av::PlainFormat(original.format, &full_range) == format && description != nullptr &&
+         (description->flags & AV_PIX_FMT_FLAG_PLANAR) != 0 &&
+         (description->flags & AV_PIX_FMT_FLAG_RGB) == 0 && original.width == frame.width &&
+         original.height == frame.height && decoded.data.size() == edited.data.size();
+}
+
+struct Rows {
+  int first = 0, count = 0;
+};
+// The rows to convert for the touched ones to come out as in the whole picture: with what the
+// chroma filter reaches beyond them. Few numbers of rows occur, each of which needs a scaler, and
+// rows begin where ordered dither does.
+Rows RowsToConvert(const Touched& touched) {
+  constexpr int kReach = 16, kDither = 8, kStep = 64;
+  const int height = int(touched.row_of.size());
+  int first = 0, end = height;
+  while (first < end && touched.row_of[std::size_t(first)] < 0) ++first;
+  while (end > first && touched.row_of[std::size_t(end - 1)] < 0) --end;
+  if (first == end) return {};
+  Rows rows{std::max(0, first - kReach) / kDither * kDither, height};
+  end = std::min(height, end + kReach);
+  rows.count = std::min(height, (end - rows.first + kStep - 1) / kStep * kStep);
+  if (rows.first + rows.count > height) {
+    rows.first = (height - rows.count) / kDither * kDither;
+    rows.count = height - rows.first;
+  }
+  return rows;
+}
+
 }  // namespace
 
 ImageRgb8 RgbOfPlanes(const AVFrame& planes) {
@@ -85,36 +134,51 @@ ImageRgb8 RgbOfPlanes(const AVFrame& planes) {
   return rgb;
 }
 
-void FillFromRgb(const ImageRgb8& rgb, SwsContext* scaler, AVFrame& frame) {
-  const std::uint8_t* pixels = rgb.data.data();
-  const int stride = 3 * rgb.width;
-  sws_scale(scaler, &pixels, &stride, 0, rgb.height, frame.data, frame.linesize);
+Result<PlanesFromRgb> PlanesFromRgb::Create(int width, int height, AVPixelFormat format,
+                                            const av::ColourReading& reading) {
+  PlanesFromRgb planes(width, height, format, reading);
+  LG_RETURN_IF_ERROR(planes.Prepare(height));
+  return planes;
 }
 
-bool RestoreUntouched(const ImageRgb8& edited, const ImageRgb8& decoded, const AVFrame& original,
-                      AVFrame& frame) {
-  bool full_range = false;
-  const AVPixelFormat format = av::PlainFormat(frame.format, &full_range);
-  const AVPixFmtDescriptor* description = av_pix_fmt_desc_get(format);
-  if (av::PlainFormat(original.format, &full_range) != format || description == nullptr ||
-      (description->flags & AV_PIX_FMT_FLAG_PLANAR) == 0 ||
-      (description->flags & AV_PIX_FMT_FLAG_RGB) != 0 || original.width != frame.width ||
-      original.height != frame.height || decoded.data.size() != edited.data.size()) {
-    return false;
+Status PlanesFromRgb::Prepare(int rows) {
+  if (scalers_.contains(rows)) return {};
+  LG_ASSIGN(scalers_[rows], av::ScalerFromRgb(width_, rows, format_, reading_));
+  return {};
+}
+
+void PlanesFromRgb::FillRows(const ImageRgb8& rgb, int first, int rows, AVFrame& frame) {
+  const std::uint8_t* pixels = rgb.at(0, first);
+  const int stride = 3 * rgb.width;
+  const AVPixFmtDescriptor* description = av_pix_fmt_desc_get(format_);
+  std::uint8_t* planes[4] = {};
+  for (int p = 0; p < 4; ++p) {
+    if (frame.data[p] == nullptr) continue;
+    const int row = p == 1 || p == 2 ? first >> description->log2_chroma_h : first;
+    planes[p] = frame.data[p] + row * frame.linesize[p];
+  }
+  sws_scale(scalers_.at(rows).get(), &pixels, &stride, 0, rows, planes, frame.linesize);
+}
+
+void PlanesFromRgb::Fill(const ImageRgb8& rgb, AVFrame& frame) {
+  FillRows(rgb, 0, height_, frame);
+}
+
+void PlanesFromRgb::FillEdited(const ImageRgb8& edited, const ImageRgb8& decoded,
+                               const AVFrame& original, AVFrame& frame) {
+  if (!CanRestore(edited, decoded, original, frame)) {
+    Fill(edited, frame);
+    return;
   }
   const Touched touched(edited, decoded);
-  bool plane_done[4] = {};
-  for (int i = 0; i < description->nb_components; ++i) {
-    const AVComponentDescriptor& component = description->comp[i];
-    const int plane = component.plane;
-    if (plane_done[plane]) continue;  // NV12 keeps both chroma components in one
-    plane_done[plane] = true;
-    const bool chroma = i == 1 || i == 2;
-    RestorePlane(touched, chroma ? description->log2_chroma_w : 0,
-                 chroma ? description->log2_chroma_h : 0, component.step, original.data[plane],
-                 original.linesize[plane], frame.data[plane], frame.linesize[plane]);
+  if (const Rows rows = RowsToConvert(touched); rows.count > 0) {
+    if (Prepare(rows.count)) {
+      FillRows(edited, rows.first, rows.count, frame);
+    } else {
+      Fill(edited, frame);
+    }
   }
-  return true;
+  RestorePlanes(touched, original, frame);
 }
 
 }  // namespace lorgnette

@@ -3,6 +3,8 @@
 // ffmpeg program; without it these tests are skipped.
 extern "C" {
 #include <libavformat/avformat.h>
+#include <libavutil/imgutils.h>
+#include <libavutil/pixdesc.h>
 }
 
 #include <gmock/gmock.h>
@@ -215,35 +217,74 @@ av::Frame MakeFrame(int width, int height, AVPixelFormat format, std::uint8_t va
   return frame;
 }
 
-TEST(RestoreUntouched, GivesBackExactlyTheSamplesOfUnchangedPixels) {
-  const ImageRgb8 decoded(5, 4);
-  ImageRgb8 edited = decoded;
-  edited.at(3, 1)[2] = 9;  // one pixel of the chroma block (1, 0)
-  const av::Frame original = MakeFrame(5, 4, AV_PIX_FMT_YUV420P, 77);
-  const av::Frame frame = MakeFrame(5, 4, AV_PIX_FMT_YUV420P, 11);
-  ASSERT_TRUE(RestoreUntouched(edited, decoded, *original, *frame));
-  for (int y = 0; y < 4; ++y) {
-    for (int x = 0; x < 5; ++x) {
-      const int expected = x == 3 && y == 1 ? 11 : 77;
-      EXPECT_EQ(frame->data[0][y * frame->linesize[0] + x], expected) << x << ',' << y;
+// Planes of `frame` as rows of bytes, without the padding.
+std::vector<std::string> PlaneRows(const AVFrame& frame) {
+  std::vector<std::string> rows;
+  for (int p = 0; p < 4 && frame.data[p] != nullptr; ++p) {
+    const int width = av_image_get_linesize(AVPixelFormat(frame.format), frame.width, p);
+    const AVPixFmtDescriptor* d = av_pix_fmt_desc_get(AVPixelFormat(frame.format));
+    const int height =
+        p == 1 || p == 2 ? AV_CEIL_RSHIFT(frame.height, d->log2_chroma_h) : frame.height;
+    for (int y = 0; y < height; ++y) {
+      rows.emplace_back(reinterpret_cast<const char*>(frame.data[p] + y * frame.linesize[p]),
+                        std::size_t(width));
     }
   }
-  for (int plane : {1, 2}) {
-    for (int y = 0; y < 2; ++y) {
-      for (int x = 0; x < 3; ++x) {
-        const int expected = x == 1 && y == 0 ? 11 : 77;
-        EXPECT_EQ(frame->data[plane][y * frame->linesize[plane] + x], expected) << x << ',' << y;
+  return rows;
+}
+
+TEST(PlanesFromRgbTest, GivesTheSamplesOfUnchangedPixelsBackAndTheOthersAsInTheWholePicture) {
+  constexpr int kWidth = 22, kHeight = 310;
+  ImageRgb8 edited(kWidth, kHeight);
+  for (std::size_t i = 0; i < edited.data.size(); ++i) edited.data[i] = std::uint8_t(i * 7919 >> 4);
+  for (const AVPixelFormat format : {AV_PIX_FMT_YUV420P, AV_PIX_FMT_YUV422P, AV_PIX_FMT_YUV444P,
+                                     AV_PIX_FMT_NV12, AV_PIX_FMT_YUV420P10}) {
+    auto planes = PlanesFromRgb::Create(kWidth, kHeight, format, {});
+    ASSERT_TRUE(planes);
+    const av::Frame original = MakeFrame(kWidth, kHeight, format, 77);
+    const av::Frame whole = MakeFrame(kWidth, kHeight, format, 0);
+    planes->Fill(edited, *whole);
+    const auto plain = PlaneRows(*whole);
+    for (const auto& [first, last] :
+         {std::pair(0, 0), std::pair(3, 6), std::pair(133, 171), std::pair(309, 309),
+          std::pair(250, 308), std::pair(1, 309), std::pair(5, 4)}) {
+      ImageRgb8 decoded = edited;
+      for (int y = first; y <= last; ++y) decoded.at(6, y)[1] ^= 1;
+      const av::Frame frame = MakeFrame(kWidth, kHeight, format, 11);
+      planes->FillEdited(edited, decoded, *original, *frame);
+      const auto rows = PlaneRows(*frame);
+      const AVPixFmtDescriptor* d = av_pix_fmt_desc_get(format);
+      const int bytes = d->comp[0].step;
+      ASSERT_EQ(rows.size(), plain.size());
+      for (std::size_t r = 0; r < rows.size(); ++r) {
+        const bool chroma = r >= kHeight;
+        const int chroma_rows = AV_CEIL_RSHIFT(kHeight, d->log2_chroma_h);
+        const int y = chroma ? int(r - kHeight) % chroma_rows : int(r);
+        const int shift = chroma ? d->log2_chroma_h : 0;
+        const bool touched = first <= last && y >= first >> shift && y <= last >> shift;
+        // The touched column's sample: NV12 keeps two in one.
+        const int sample = chroma ? d->comp[1].step : bytes;
+        const int at = (chroma ? 6 >> d->log2_chroma_w : 6) * sample;
+        std::string expected(rows[r].size(), char(77));
+        if (touched) expected.replace(at, sample, plain[r].substr(at, sample));
+        ASSERT_EQ(rows[r], expected) << av_get_pix_fmt_name(format) << ' ' << first << ' ' << r;
       }
     }
   }
 }
 
-TEST(RestoreUntouched, LeavesOtherFormatsAlone) {
-  const ImageRgb8 image(4, 4);
+TEST(PlanesFromRgbTest, OtherFormatsAreConvertedWhole) {
+  ImageRgb8 image(4, 4);
+  std::fill(image.data.begin(), image.data.end(), std::uint8_t{200});
+  auto planes = PlanesFromRgb::Create(4, 4, AV_PIX_FMT_YUV420P, {});
+  ASSERT_TRUE(planes);
   const av::Frame original = MakeFrame(4, 4, AV_PIX_FMT_YUV444P, 77);
   const av::Frame frame = MakeFrame(4, 4, AV_PIX_FMT_YUV420P, 11);
-  EXPECT_FALSE(RestoreUntouched(image, image, *original, *frame));
-  EXPECT_EQ(frame->data[0][0], 11);
+  const av::Frame whole = MakeFrame(4, 4, AV_PIX_FMT_YUV420P, 11);
+  planes->FillEdited(image, image, *original, *frame);
+  planes->Fill(image, *whole);
+  EXPECT_EQ(PlaneRows(*frame), PlaneRows(*whole));
+  EXPECT_NE(frame->data[0][0], 77);
 }
 
 TEST(Oriented, QuarterTurnsComposeToTheIdentity) {
