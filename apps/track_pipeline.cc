@@ -86,10 +86,10 @@ Result<HeadTrack> TrackVideo(const TrackRequest& request) {
     options.camera = camera->camera;
     rectifier = RectifierFor(camera->camera, camera->distortion);
   }
+  DecodingThread decoding(reader, request.frames, rectifier);  // while the networks are loaded
   LG_ASSIGN(Tracker tracker, Tracker::Create(options));
   Progress progress("tracking", "frames", request.frames.Count(reader.info().frame_count));
   long taken = 0;
-  DecodingThread decoding(reader, request.frames, rectifier);
   while (const std::optional<VideoFrame> frame = decoding.Next()) {
     LG_RETURN_IF_ERROR(tracker.Add(frame->rgb, frame->time_s));
     progress.Update(++taken);

@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <future>
 #include <limits>
 
 #include "base/units.h"
@@ -278,14 +279,13 @@ struct BridgeChoice {
 BridgeChoice ChooseBridge(const FrameModel& frame, const FaceRelief& relief, const EarPoints& ears,
                           const Eigen::Vector3d& pupil_right, const Eigen::Vector3d& pupil_left,
                           const FitOptions& options) {
-  BridgeChoice chosen;
-  for (const double size : SizesOf(frame, options)) {
+  const auto best_of = [&](double size) {
     const double change = size - frame.boxing.dbl_mm;
+    BridgeChoice chosen;
     FrameModel made =
         std::abs(change) < 0.05 ? frame : BuildFrame(WithBridge(*frame.parameters, size, 0));
     const PadRange range = PadRangeOf(made, options);
     const Fitter fitter(made, relief, ears, pupil_right, pupil_left, options);
-    bool better = false;
     const double steps = std::ceil(range.inward / kShiftStep_mm);
     for (double shift = -steps * kShiftStep_mm; shift <= range.outward + 1e-9;
          shift += kShiftStep_mm) {
@@ -295,15 +295,22 @@ BridgeChoice ChooseBridge(const FrameModel& frame, const FaceRelief& relief, con
       if (tried.cost < chosen.best.cost) {
         chosen.best = tried;
         chosen.shift = std::abs(shift) < 1e-9 ? 0 : shift;
-        better = true;
       }
     }
-    if (better) {
-      chosen.dbl_mm = size;
-      chosen.frame = std::move(made);
-    }
+    chosen.dbl_mm = size;
+    chosen.frame = std::move(made);
+    return chosen;
+  };
+  std::vector<std::future<BridgeChoice>> all;
+  for (const double size : SizesOf(frame, options)) {
+    all.push_back(std::async(std::launch::async, best_of, size));
   }
-  return chosen;
+  BridgeChoice best = all[0].get();
+  for (std::size_t i = 1; i < all.size(); ++i) {
+    BridgeChoice other = all[i].get();
+    if (other.best.cost < best.best.cost) best = std::move(other);
+  }
+  return best;
 }
 
 // What was done to the bridge, for the report.

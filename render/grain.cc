@@ -1,6 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "render/grain.h"
 
+#include <tbb/blocked_range.h>
+#include <tbb/parallel_for.h>
+
 #include <algorithm>
 #include <cmath>
 #include <numbers>
@@ -16,14 +19,27 @@ constexpr double kSmoothBlocks = 0.2;   // share of the blocks that speak for th
 constexpr double kPixelBlur_px = 0.29;  // what the renderer's own box filter does: 1 / sqrt(12)
 constexpr double kReblur_px = 1;
 
+// Calls work(y) for every row.
+template <typename Work>
+void ForRows(int height, Work&& work) {
+  constexpr int kRowsATask = 32;
+  tbb::parallel_for(tbb::blocked_range<int>(0, height, kRowsATask),
+                    [&](const tbb::blocked_range<int>& rows) {
+                      for (int y = rows.begin(); y < rows.end(); ++y) work(y);
+                    });
+}
+
 // Display-encoded luma, 0..255.
 std::vector<float> CodeLuma(const ImageRgbF& image) {
   std::vector<float> luma(std::size_t(image.width) * std::size_t(image.height));
-  for (std::size_t i = 0; i < luma.size(); ++i) {
-    const float* p = image.data.data() + 3 * i;
-    const double y = 0.2126 * double(p[0]) + 0.7152 * double(p[1]) + 0.0722 * double(p[2]);
-    luma[i] = float(255 * SrgbFromLinear(std::clamp(y, 0.0, 1.0)));
-  }
+  ForRows(image.height, [&](int row) {
+    const float* p = image.at(0, row);
+    float* out = luma.data() + std::size_t(row) * std::size_t(image.width);
+    for (int x = 0; x < image.width; ++x, p += 3) {
+      const double y = 0.2126 * double(p[0]) + 0.7152 * double(p[1]) + 0.0722 * double(p[2]);
+      out[x] = float(255 * SrgbFromLinear(std::clamp(y, 0.0, 1.0)));
+    }
+  });
   return luma;
 }
 
@@ -45,7 +61,7 @@ std::vector<float> Blurred(const std::vector<float>& in, int width, int height, 
   const std::vector<float> weights = GaussianWeights(sigma);
   const int reach = int(weights.size()) / 2;
   std::vector<float> across(in.size(), 0), out(in.size(), 0);
-  for (int y = 0; y < height; ++y) {
+  ForRows(height, [&](int y) {
     for (int x = 0; x < width; ++x) {
       for (int k = -reach; k <= reach; ++k) {
         const int from = std::clamp(x + k, 0, width - 1);
@@ -55,8 +71,8 @@ std::vector<float> Blurred(const std::vector<float>& in, int width, int height, 
         }
       }
     }
-  }
-  for (int y = 0; y < height; ++y) {
+  });
+  ForRows(height, [&](int y) {
     for (int k = -reach; k <= reach; ++k) {
       const int from = std::clamp(y + k, 0, height - 1);
       const float w = weights[std::size_t(k + reach)];
@@ -65,7 +81,7 @@ std::vector<float> Blurred(const std::vector<float>& in, int width, int height, 
             w * across[std::size_t(from * width * channels + i)];
       }
     }
-  }
+  });
   return out;
 }
 

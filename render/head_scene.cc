@@ -2,6 +2,7 @@
 #include "render/head_scene.h"
 
 #include <fmt/format.h>
+#include <tbb/parallel_invoke.h>
 
 #include <algorithm>
 #include <cmath>
@@ -104,25 +105,38 @@ Result<HeadScene> HeadScene::Build(const Eyewear& eyewear, const TriangleMesh& f
     return UsageError(
         fmt::format("wavelengths: got {}, want a multiple of 3", options.wavelengths));
   }
+  const bool own_directions =
+      options.shadow == ShadowMode::kBaked || options.shadow == ShadowMode::kGathered;
+  const int directions = own_directions ? options.shadow_directions : kLightDirections;
   TriangleMesh smooth_face = face;
   if (smooth_face.normals.size() != smooth_face.positions.size()) ComputeVertexNormals(smooth_face);
-  FrameSurface frame = JoinParts(eyewear, environment);
+  const CutLens* const cuts[2] = {&eyewear.right, &eyewear.left};
+  for (const CutLens* cut : cuts) {
+    if (cut->contour_mm.size() < 3) {
+      return Failure(
+          fmt::format("a lens contour has {} points, want 3 or more", cut->contour_mm.size()));
+    }
+  }
+  FrameSurface frame;
+  std::optional<LensSolid> solids[2];
+  std::optional<BlurredEnvironment> cells;
+  const auto solid = [&](int k) {
+    solids[k].emplace(cuts[k]->lens.lens(), cuts[k]->contour_mm,
+                      eyewear.head_from_frame * cuts[k]->frame_from_lens);
+  };
+  tbb::parallel_invoke([&] { frame = JoinParts(eyewear, environment); }, [&] { solid(0); },
+                       [&] { solid(1); },
+                       [&] { cells = BlurredEnvironment::ForCells(environment, directions); });
   LG_ASSIGN(EmbreeScene scene, EmbreeScene::Build(smooth_face, occluder, frame.mesh));
 
   std::vector<LensSolid> lenses;
   std::vector<LensLook> looks;
   std::vector<double> rim_depth;
-  for (const CutLens* cut : {&eyewear.right, &eyewear.left}) {
-    if (cut->contour_mm.size() < 3) {
-      return Failure(
-          fmt::format("a lens contour has {} points, want 3 or more", cut->contour_mm.size()));
-    }
-    lenses.emplace_back(cut->lens.lens(), cut->contour_mm,
-                        eyewear.head_from_frame * cut->frame_from_lens);
-    const LensSolid& solid = lenses.back();
+  for (std::optional<LensSolid>& made : solids) {
+    const LensSolid& lens = lenses.emplace_back(*std::move(made));
     looks.push_back(
-        LookOf(options.finish, solid.lens().medium.index_d, solid.high().y(), solid.low().y()));
-    rim_depth.push_back(RimDepth(solid, frame.mesh));
+        LookOf(options.finish, lens.lens().medium.index_d, lens.high().y(), lens.low().y()));
+    rim_depth.push_back(RimDepth(lens, frame.mesh));
   }
 
   std::vector<SurfacePoint> frame_points;
@@ -132,9 +146,6 @@ Result<HeadScene> HeadScene::Build(const Eyewear& eyewear, const TriangleMesh& f
   }
   BakedIrradiance frame_light = BakedIrradiance::Bake(scene, frame_points, kFrameDirections);
 
-  const bool own_directions =
-      options.shadow == ShadowMode::kBaked || options.shadow == ShadowMode::kGathered;
-  const int directions = own_directions ? options.shadow_directions : kLightDirections;
   std::optional<BakedShadow> baked_shadow;
   std::optional<PaperShadow> paper_shadow;
   std::optional<FaceLattice> gather_lattice;
@@ -169,7 +180,7 @@ Result<HeadScene> HeadScene::Build(const Eyewear& eyewear, const TriangleMesh& f
                    environment.Mean(),
                    BrightestLight(environment),
                    SphereDirections(directions),
-                   BlurredEnvironment::ForCells(environment, directions),
+                   *std::move(cells),
                    std::move(frame_light),
                    std::move(baked_shadow),
                    std::move(paper_shadow),
