@@ -170,6 +170,7 @@ Result<FittedEyewear> FitEyewear(const FrameModel& frame, const TriangleMesh& fa
   again.lens_depth_mm += deeper;
   LG_ASSIGN(Fit fit, PlaceOnFace(frame, face, pupil_right, pupil_left, again));
   LG_ASSIGN(Eyewear eyewear, MakeEyewear(fit, prescription, pupil_right, pupil_left, options));
+  NoteVertexDistance(fit_options, eyewear.wearing);
   return FittedEyewear{std::move(fit), std::move(eyewear)};
 }
 

@@ -347,6 +347,15 @@ EarPoints EstimateEars(const TriangleMesh& face, double pd_mm) {
   return ears;
 }
 
+void NoteVertexDistance(const FitOptions& options, WearingPosition& wearing) {
+  const double vertex = (wearing.vertex_distance_right_mm + wearing.vertex_distance_left_mm) / 2;
+  if (vertex > options.min_vertex_mm - 0.05 && vertex < options.max_vertex_mm + 0.05) return;
+  wearing.notes.push_back(
+      fmt::format("vertex distance {:.1f} mm, want {:.0f} to {:.0f}: this bridge on this nose "
+                  "allows no better",
+                  vertex, options.min_vertex_mm, options.max_vertex_mm));
+}
+
 Result<Fit> PlaceOnFace(const FrameModel& frame, const TriangleMesh& face,
                         const Eigen::Vector3d& pupil_right, const Eigen::Vector3d& pupil_left,
                         const FitOptions& options) {
@@ -405,13 +414,6 @@ Result<Fit> PlaceOnFace(const FrameModel& frame, const TriangleMesh& face,
   wearing.nose_gap_mm = std::max({0.0, -right, -left});
 
   NoteBridge(frame, chosen, wearing);
-  const double vertex = (wearing.vertex_distance_right_mm + wearing.vertex_distance_left_mm) / 2;
-  if (vertex < options.min_vertex_mm - 0.05 || vertex > options.max_vertex_mm + 0.05) {
-    wearing.notes.push_back(
-        fmt::format("vertex distance {:.1f} mm, want {:.0f} to {:.0f}: this bridge on this nose "
-                    "allows no better",
-                    vertex, options.min_vertex_mm, options.max_vertex_mm));
-  }
   const double head_width = (fit.ears.left - fit.ears.right).norm();
   const double wider = frame.temple_spread_mm - head_width;
   if (std::abs(wider) > kWidthNote_mm) {

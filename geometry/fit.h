@@ -51,7 +51,7 @@ struct Fit {
 //   pupil_right, pupil_left   corneal apices, head space
 // The contacts touch: none is deeper in the skin than kContactDepth_mm plus the map's error, at
 // least one on each side touches, and no other part of the front enters the skin. Symmetric: both
-// sides' contacts press alike. What cannot be reached (vertex range, width) is a note with figures.
+// sides' contacts press alike. A head of another width than the frame's is a note with the figure.
 // Fails when the nose is not in the mesh below the frame.
 Result<Fit> PlaceOnFace(const FrameModel& frame, const TriangleMesh& face,
                         const Eigen::Vector3d& pupil_right, const Eigen::Vector3d& pupil_left,
@@ -59,5 +59,9 @@ Result<Fit> PlaceOnFace(const FrameModel& frame, const TriangleMesh& face,
 
 // Skin gives way by this much under the pads.
 inline constexpr double kContactDepth_mm = 0.2;
+
+// Notes a vertex distance outside the options' range; for the lenses as they are made, of which
+// PlaceOnFace knows the depth only by assumption.
+void NoteVertexDistance(const FitOptions& options, WearingPosition& wearing);
 
 }  // namespace lorgnette

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "geometry/fit.h"
 
+#include <fmt/format.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -93,6 +94,21 @@ TEST(PlaceOnFace, FollowsAFaceThatIsMovedSideways) {
   const auto fit = PlaceOnFace(frame, face, kRight, kLeft);
   ASSERT_TRUE(fit.has_value());
   EXPECT_NEAR(fit->head_from_frame.translation().x(), 1.5, 0.1);
+}
+
+TEST(FitEyewear, NotesTheVertexDistanceThatItReports) {
+  Prescription rx;
+  rx.right.sphere = rx.left.sphere = Diopters(-8);
+  FitOptions options;
+  options.min_vertex_mm = 25;  // none so far
+  options.max_vertex_mm = 26;
+  const auto fitted =
+      FitEyewear(*LoadFrame("panto"), MadeFace(), kRight, kLeft, rx, options, EyewearOptions{});
+  ASSERT_TRUE(fitted.has_value()) << fitted.error().message;
+  const WearingPosition& wearing = fitted->eyewear.wearing;
+  const double mean = (wearing.vertex_distance_right_mm + wearing.vertex_distance_left_mm) / 2;
+  EXPECT_THAT(wearing.notes, testing::Contains(testing::HasSubstr(
+                                 fmt::format("vertex distance {:.1f} mm, want 25 to 26", mean))));
 }
 
 TEST(PlaceOnFace, NudgeMovesByExactlyThat) {

@@ -15,12 +15,12 @@ namespace {
 ImageRgbF Bars(double blur_px, double grain_codes) {
   ImageRgbF image(240, 160);
   std::mt19937 random(8);
-  std::normal_distribution<double> grain(0, grain_codes);
+  std::normal_distribution<double> grain;  // of one code
   for (int y = 0; y < image.height; ++y) {
     for (int x = 0; x < image.width; ++x) {
       const double to_edge = (x % 60 < 30 ? 1 : -1) * (15 - std::abs(x % 30 - 14.5));
-      const double code = 127 + 70 * std::erf(to_edge / (std::sqrt(2.0) * blur_px)) +
-                          (grain_codes > 0 ? grain(random) : 0.0);
+      const double code =
+          127 + 70 * std::erf(to_edge / (std::sqrt(2.0) * blur_px)) + grain_codes * grain(random);
       for (int c = 0; c < 3; ++c) image.at(x, y)[c] = float(LinearFromSrgb(code / 255));
     }
   }
