@@ -33,9 +33,10 @@ Result<ImageRgbF> ReadRadianceHdr(const std::string& path);
 // By content: EXR or Radiance HDR; other files are an error that names both.
 Result<ImageRgbF> ReadHighDynamicRange(const std::string& path);
 
-// PNG, JPEG and what else OpenCV decodes to 8 bits; grey becomes RGB, alpha is dropped.
+// PNG, JPEG, BMP, TIFF or WebP by content, to 8 bits, upright as EXIF says; grey becomes RGB, alpha
+// is dropped.
 Result<ImageRgb8> ReadPicture(const std::string& path);
-// PNG, or JPEG at quality 95, by the name's extension.
+// PNG, or JPEG of high quality, by the name's extension.
 Status WritePicture(const ImageRgb8& image, const std::string& path);
 
 }  // namespace lorgnette

@@ -42,6 +42,15 @@ Result<Input> OpenInput(const std::string& path) {
   return input;
 }
 
+Result<Frame> NewFrame(int width, int height, AVPixelFormat format) {
+  Frame frame(av_frame_alloc());
+  frame->width = width;
+  frame->height = height;
+  frame->format = format;
+  if (av_frame_get_buffer(frame.get(), 0) < 0) return Failure("no memory for a frame");
+  return frame;
+}
+
 Result<Codec> OpenDecoder(const AVStream& stream, const std::string& path) {
   const AVCodec* decoder = avcodec_find_decoder(stream.codecpar->codec_id);
   if (decoder == nullptr) {
@@ -147,15 +156,19 @@ Result<Scaler> ScalerToPlanes(int width, int height, AVPixelFormat format, const
   return MakeScaler(width, height, format, c.full_range, AV_PIX_FMT_GBRP, true, c, true);
 }
 
+Result<Scaler> ScalerToRgb(int width, int height, AVPixelFormat format, const ColourReading& c) {
+  return MakeScaler(width, height, format, c.full_range, AV_PIX_FMT_RGB24, true, c, true);
+}
+
 Result<Scaler> ScalerFromRgb(int width, int height, AVPixelFormat format, const ColourReading& c) {
   return MakeScaler(width, height, AV_PIX_FMT_RGB24, true, format, c.full_range, c, false);
 }
 
 }  // namespace av
 
-Orientation OrientationOf(const AVStream& stream) {
-  const std::uint8_t* data = av_stream_get_side_data(&stream, AV_PKT_DATA_DISPLAYMATRIX, nullptr);
-  if (data == nullptr) return {};
+namespace {
+
+Orientation OrientationOfMatrix(const std::uint8_t* data) {
   std::int32_t m[9];
   std::memcpy(m, data, sizeof m);
   const auto unit = [&](int i) { return static_cast<int>(std::lround(m[i] / 65536.0)); };
@@ -164,6 +177,19 @@ Orientation OrientationOf(const AVStream& stream) {
   const bool quarter = std::abs(o.xx) + std::abs(o.xy) == 1 &&
                        std::abs(o.yx) + std::abs(o.yy) == 1 && std::abs(o.xx) == std::abs(o.yy);
   return quarter ? o : Orientation{};
+}
+
+}  // namespace
+
+Orientation OrientationOf(const AVStream& stream) {
+  const std::uint8_t* data = av_stream_get_side_data(&stream, AV_PKT_DATA_DISPLAYMATRIX, nullptr);
+  return data == nullptr ? Orientation{} : OrientationOfMatrix(data);
+}
+
+Orientation OrientationOf(const AVFrame& frame) {
+  const AVFrameSideData* data = av_frame_get_side_data(&frame, AV_FRAME_DATA_DISPLAYMATRIX);
+  if (data == nullptr || data->size < 9 * sizeof(std::int32_t)) return {};
+  return OrientationOfMatrix(data->data);
 }
 
 ImageRgb8 Oriented(ImageRgb8 image, const Orientation& o) {

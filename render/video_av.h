@@ -39,6 +39,9 @@ std::string Reason(int error);
 // Errors reach the user as one sentence of ours, so libav and x264 write nothing themselves.
 void SilenceLog();
 
+// With buffers allocated.
+Result<Frame> NewFrame(int width, int height, AVPixelFormat format);
+
 // Opens a container and finds its streams; the error names the path.
 Result<Input> OpenInput(const std::string& path);
 // Decoder for one stream, opened.
@@ -59,8 +62,9 @@ int MatrixOf(AVColorSpace space, int width, int height);
 
 // Converters between YUV and RGB of one size, with accurate rounding: from `format` to planes
 // (GBRP, for which libswscale has vector code; to packed RGB it takes five times as long), and from
-// packed RGB24 to `format`.
+// packed RGB24 to `format`. To packed RGB24, from colours and greys without loss.
 Result<Scaler> ScalerToPlanes(int width, int height, AVPixelFormat format, const ColourReading& c);
+Result<Scaler> ScalerToRgb(int width, int height, AVPixelFormat format, const ColourReading& c);
 Result<Scaler> ScalerFromRgb(int width, int height, AVPixelFormat format, const ColourReading& c);
 
 }  // namespace av
@@ -73,8 +77,10 @@ struct Orientation {
   bool swaps_sides() const { return xy != 0; }
   Orientation Inverse() const { return {xx, yx, xy, yy}; }
 };
-// Of a stream's display matrix; identity when there is none, or when it is no quarter turn.
+// Of the display matrix of a stream, or of a picture (EXIF); identity when there is none, or when
+// it is no quarter turn.
 Orientation OrientationOf(const AVStream& stream);
+Orientation OrientationOf(const AVFrame& frame);
 ImageRgb8 Oriented(ImageRgb8 image, const Orientation& orientation);
 
 struct DecodedPicture {

@@ -13,7 +13,6 @@ extern "C" {
 #include <cstring>
 #include <limits>
 
-
 namespace lorgnette {
 namespace {
 
@@ -161,13 +160,7 @@ Status VideoEncoder::Write(const VideoFrame& frame) {
     return Failure(fmt::format("{}: got a frame of {}x{} pixels, want {}x{}", file_.final_path(),
                                turned.width, turned.height, source_.width, source_.height));
   }
-  av::Frame picture(av_frame_alloc());
-  picture->width = source_.width;
-  picture->height = source_.height;
-  picture->format = codec_->pix_fmt;
-  if (av_frame_get_buffer(picture.get(), 0) < 0) {
-    return Failure(file_.final_path() + ": no memory for a frame");
-  }
+  LG_ASSIGN(const av::Frame picture, av::NewFrame(source_.width, source_.height, codec_->pix_fmt));
   if (frame.original != nullptr) {
     const ImageRgb8& decoded = stored(frame.original->rgb, decoded_copy);
     from_rgb_->FillEdited(turned, decoded, *frame.original->frame, *picture);

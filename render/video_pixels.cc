@@ -160,9 +160,7 @@ void PlanesFromRgb::FillRows(const ImageRgb8& rgb, int first, int rows, AVFrame&
   sws_scale(scalers_.at(rows).get(), &pixels, &stride, 0, rows, planes, frame.linesize);
 }
 
-void PlanesFromRgb::Fill(const ImageRgb8& rgb, AVFrame& frame) {
-  FillRows(rgb, 0, height_, frame);
-}
+void PlanesFromRgb::Fill(const ImageRgb8& rgb, AVFrame& frame) { FillRows(rgb, 0, height_, frame); }
 
 void PlanesFromRgb::FillEdited(const ImageRgb8& edited, const ImageRgb8& decoded,
                                const AVFrame& original, AVFrame& frame) {

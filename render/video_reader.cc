@@ -143,11 +143,7 @@ Status VideoReader::State::SetScaler(const AVFrame& frame) {
   auto scaler = av::ScalerToPlanes(frame.width, frame.height, format, reading);
   if (!scaler) return Failure(path + ": " + scaler.error().message);
   to_planes = *std::move(scaler);
-  planes.reset(av_frame_alloc());
-  planes->width = frame.width;
-  planes->height = frame.height;
-  planes->format = AV_PIX_FMT_GBRP;
-  if (av_frame_get_buffer(planes.get(), 0) < 0) return Failure(path + ": no memory for a frame");
+  LG_ASSIGN(planes, av::NewFrame(frame.width, frame.height, AV_PIX_FMT_GBRP));
   scaler_format = frame.format;
   return {};
 }

@@ -3,7 +3,9 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
+#include <cstdlib>
 #include <filesystem>
 
 #include "base/atomic_file.h"
@@ -132,6 +134,72 @@ TEST(Picture, KeepsPngToTheBit) {
   const auto back = ReadPicture(path);
   ASSERT_TRUE(back);
   EXPECT_EQ(back->data, image.data);
+}
+
+// Smooth, as JPEG likes it: red to the right, green downward.
+ImageRgb8 Gradients(int width, int height) {
+  ImageRgb8 image(width, height);
+  for (int y = 0; y < height; ++y) {
+    for (int x = 0; x < width; ++x) {
+      image.at(x, y)[0] = std::uint8_t(255 * x / (width - 1));
+      image.at(x, y)[1] = std::uint8_t(255 * y / (height - 1));
+      image.at(x, y)[2] = 90;
+    }
+  }
+  return image;
+}
+
+int GreatestDifference(const ImageRgb8& a, const ImageRgb8& b) {
+  if (a.width != b.width || a.height != b.height) return 256;
+  int greatest = 0;
+  for (std::size_t i = 0; i < a.data.size(); ++i) {
+    greatest = std::max(greatest, std::abs(int(a.data[i]) - int(b.data[i])));
+  }
+  return greatest;
+}
+
+TEST(Picture, KeepsJpegToAFewCodes) {
+  const std::string path = Temporary("picture.jpg");
+  const ImageRgb8 image = Gradients(64, 40);
+  ASSERT_TRUE(WritePicture(image, path));
+  const auto back = ReadPicture(path);
+  ASSERT_TRUE(back) << back.error().message;
+  EXPECT_LE(GreatestDifference(*back, image), 6);
+}
+
+TEST(Picture, TurnsAJpegUprightAsExifSays) {
+  const std::string path = Temporary("held.jpg");
+  const ImageRgb8 image = Gradients(64, 40);
+  ASSERT_TRUE(WritePicture(image, path));
+  const std::string plain = *ReadFile(path);
+  // APP1 with one entry of IFD 0, the orientation: 6, row 0 of the file is the right side.
+  using namespace std::string_literals;
+  const std::string exif =
+      "\xff\xe1\x00\x22"s
+      "Exif\0\0MM\0*\0\0\0\x08\0\x01\x01\x12\0\x03\0\0\0\x01\0\x06\0\0\0\0\0\0"s;
+  ASSERT_TRUE(WriteFileAtomically(path, plain.substr(0, 2) + exif + plain.substr(2)));
+  const auto held = ReadPicture(path);
+  ASSERT_TRUE(held) << held.error().message;
+  ImageRgb8 upright(40, 64);
+  for (int y = 0; y < 40; ++y) {
+    for (int x = 0; x < 64; ++x) std::copy_n(image.at(x, y), 3, upright.at(39 - y, x));
+  }
+  EXPECT_LE(GreatestDifference(*held, upright), 6);
+}
+
+TEST(Picture, RefusesAFileThatIsCutShort) {
+  for (const char* name : {"cut.png", "cut.jpg"}) {
+    const std::string path = Temporary(name);
+    ASSERT_TRUE(WritePicture(Gradients(64, 40), path));
+    const std::string whole = *ReadFile(path);
+    for (std::size_t eighths = 0; eighths < 8; ++eighths) {
+      ASSERT_TRUE(WriteFileAtomically(path, whole.substr(0, whole.size() * eighths / 8)));
+      const auto cut = ReadPicture(path);
+      EXPECT_FALSE(cut) << name << ' ' << eighths;
+      if (cut) continue;
+      EXPECT_NE(cut.error().message.find(path), std::string::npos);
+    }
+  }
 }
 
 TEST(Picture, RefusesAnExtensionItCannotWrite) {

@@ -197,7 +197,7 @@ TEST_F(VideoTest, MissingBrokenAndForeignFilesGiveASentence) {
       {"none_%d.png", "none_%d.png: no file matches this pattern"},
       {"text.mp4", "text.mp4: cannot be read: broken data, or no video"},
       {"empty.mp4", "empty.mp4: cannot be read: broken data, or no video"},
-      {"text.png", "text.png: not a picture that can be decoded"},
+      {"text.png", "text.png: not a picture, want PNG, JPEG, BMP, TIFF or WebP"},
       {".", ".: is a folder, want a file"},
   };
   for (const auto& [name, sentence] : cases) {

@@ -206,11 +206,7 @@ INSTANTIATE_TEST_SUITE_P(Tags, VideoColour,
                          });
 
 av::Frame MakeFrame(int width, int height, AVPixelFormat format, std::uint8_t value) {
-  av::Frame frame(av_frame_alloc());
-  frame->width = width;
-  frame->height = height;
-  frame->format = format;
-  EXPECT_EQ(av_frame_get_buffer(frame.get(), 0), 0);
+  av::Frame frame = *av::NewFrame(width, height, format);
   for (const AVBufferRef* buffer : frame->buf) {
     if (buffer != nullptr) std::fill_n(buffer->data, buffer->size, value);
   }
