@@ -10,6 +10,7 @@
 #include <chrono>
 #include <cmath>
 #include <filesystem>
+#include <future>
 
 #include "apps/camera_choice.h"
 #include "apps/oma_export.h"
@@ -429,12 +430,13 @@ Result<TryonResult> RunTryon(const TryonRequest& request) {
   const auto start = Clock::now();
 
   LG_ASSIGN(result.prescription, ReadRxFile(request.rx, request.pd_mm));
-  LG_ASSIGN(const FrameModel frame, LoadFrame(request.frame, request.frame_unit_mm));
+  // Frame and light are read side by side.
+  auto loading = std::async(std::launch::async,
+                            [&] { return LoadFrame(request.frame, request.frame_unit_mm); });
   const bool from_face = request.environment == "face";
-  Environment environment = Environment::Constant({1, 1, 1});
-  if (!from_face) {
-    LG_ASSIGN(environment, ReadEnvironment(request, result));
-  }
+  auto light = from_face ? Environment::Constant({1, 1, 1}) : ReadEnvironment(request, result);
+  LG_ASSIGN(const FrameModel frame, loading.get());
+  LG_ASSIGN(Environment environment, std::move(light));
   LG_ASSIGN(VideoReader reader, VideoReader::Open(request.video));
   VideoWriterOptions writing;
   writing.start_at_first_frame = !request.frames.IsWhole();

@@ -254,6 +254,7 @@ std::optional<FrameAxes> FindFrameAxes(const TriangleMesh& mesh, std::optional<d
            first);
     }
     for (double step = kFrontStep_deg / 2; openings && step > 3; step /= 2) {
+      // look() changes turn. NOLINTNEXTLINE(performance-unnecessary-copy-initialization)
       const Eigen::Matrix3d from = turn;
       for (const double angle : {-step, step}) {
         look(Eigen::AngleAxisd(RadiansFromDegrees(angle), Eigen::Vector3d::UnitX())
