@@ -30,7 +30,7 @@ LIBRARIES = {
     "CGAL/": ["geometry"],
     "boost/": ["geometry"],
     "tiny_gltf": ["geometry"],
-    "opencv2/": ["tracking", "render", "apps"],
+    "opencv2/": ["tracking"],
     "ceres/": ["tracking"],
     "embree3/": ["render"],
     "Imf": ["render"],
