@@ -35,6 +35,11 @@ if(CMAKE_UNITY_BUILD AND CMAKE_CXX_COMPILER_ID STREQUAL "GNU")
 endif()
 target_include_directories(lorgnette_options INTERFACE "${PROJECT_SOURCE_DIR}")
 
+# Tests are compiled more often than they run: a third of their time goes at -O2.
+add_library(lorgnette_test_options INTERFACE)
+target_link_libraries(lorgnette_test_options INTERFACE lorgnette_options)
+target_compile_options(lorgnette_test_options INTERFACE $<$<CONFIG:Release>:-O1>)
+
 # For whoever includes "cmake/source_dir.h".
 configure_file("${PROJECT_SOURCE_DIR}/cmake/source_dir.h.in"
                "${PROJECT_BINARY_DIR}/generated/cmake/source_dir.h" @ONLY)
@@ -58,7 +63,7 @@ if(LORGNETTE_PCH)
     target_precompile_headers(lorgnette_pch_${kind} PRIVATE ${LORGNETTE_PCH_HEADERS})
   endforeach()
   if(LORGNETTE_TESTS)
-    target_link_libraries(lorgnette_pch_tests PRIVATE GTest::gmock)
+    target_link_libraries(lorgnette_pch_tests PRIVATE lorgnette_test_options GTest::gmock)
     target_precompile_headers(lorgnette_pch_tests PRIVATE <gmock/gmock.h> <gtest/gtest.h>)
   endif()
 endif()
@@ -81,9 +86,9 @@ function(lorgnette_module name)
   file(GLOB test_sources CONFIGURE_DEPENDS "${PROJECT_SOURCE_DIR}/tests/${name}/*.cc")
   if(LORGNETTE_TESTS AND test_sources)
     add_executable(${name}_tests ${test_sources})
-    target_link_libraries(${name}_tests PRIVATE lorgnette_${name} ${ARG_PRIVATE} lorgnette_options
-                                                lorgnette_source_dir GTest::gmock
-                                                GTest::gtest_main)
+    target_link_libraries(
+      ${name}_tests PRIVATE lorgnette_${name} ${ARG_PRIVATE} lorgnette_test_options
+                            lorgnette_source_dir GTest::gmock GTest::gtest_main)
     if(LORGNETTE_PCH)
       target_precompile_headers(${name}_tests REUSE_FROM lorgnette_pch_tests)
     endif()
