@@ -1,6 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "geometry/mesh_repair.h"
 
+// Every triangulation of a hole is weighed, not only those among Delaunay's: the best one, quick
+// enough for so few edges, and without the two further triangulators that CGAL would bring (a third
+// of what this file takes to compile).
+#define CGAL_HOLE_FILLING_DO_NOT_USE_DT3
+#define CGAL_HOLE_FILLING_DO_NOT_USE_CDT2
 #include <CGAL/Exact_predicates_inexact_constructions_kernel.h>
 #include <CGAL/Polygon_mesh_processing/triangulate_hole.h>
 #include <fmt/format.h>
