@@ -19,6 +19,11 @@ constexpr double kSmoothBlocks = 0.2;   // share of the blocks that speak for th
 constexpr double kPixelBlur_px = 0.29;  // what the renderer's own box filter does: 1 / sqrt(12)
 constexpr double kReblur_px = 1;
 
+// Place of a pixel in a picture of that width.
+std::size_t At(int x, int y, int width) {
+  return std::size_t(y) * std::size_t(width) + std::size_t(x);
+}
+
 // Calls work(y) for every row.
 template <typename Work>
 void ForRows(int height, Work&& work) {
@@ -66,8 +71,9 @@ std::vector<float> Blurred(const std::vector<float>& in, int width, int height, 
       for (int k = -reach; k <= reach; ++k) {
         const int from = std::clamp(x + k, 0, width - 1);
         for (int c = 0; c < channels; ++c) {
-          across[std::size_t((y * width + x) * channels + c)] +=
-              weights[std::size_t(k + reach)] * in[std::size_t((y * width + from) * channels + c)];
+          across[At(x, y, width) * std::size_t(channels) + std::size_t(c)] +=
+              weights[std::size_t(k + reach)] *
+              in[At(from, y, width) * std::size_t(channels) + std::size_t(c)];
         }
       }
     }
@@ -77,8 +83,7 @@ std::vector<float> Blurred(const std::vector<float>& in, int width, int height, 
       const int from = std::clamp(y + k, 0, height - 1);
       const float w = weights[std::size_t(k + reach)];
       for (int i = 0; i < width * channels; ++i) {
-        out[std::size_t(y * width * channels + i)] +=
-            w * across[std::size_t(from * width * channels + i)];
+        out[At(i, y, width * channels)] += w * across[At(i, from, width * channels)];
       }
     }
   });
@@ -93,9 +98,7 @@ double MeasureGrain(const std::vector<float>& luma, int width, int height) {
       int clipped = 0;
       for (int y = by; y < by + kBlock; ++y) {
         for (int x = bx; x < bx + kBlock; ++x) {
-          const auto at = [&](int dx, int dy) {
-            return double(luma[std::size_t((y + dy) * width + x + dx)]);
-          };
+          const auto at = [&](int dx, int dy) { return double(luma[At(x + dx, y + dy, width)]); };
           clipped += at(0, 0) < 2 || at(0, 0) > 253;
           sum += std::abs(at(-1, -1) - 2 * at(0, -1) + at(1, -1) - 2 * at(-1, 0) + 4 * at(0, 0) -
                           2 * at(1, 0) + at(-1, 1) - 2 * at(0, 1) + at(1, 1));
@@ -115,9 +118,7 @@ double MeasureGrain(const std::vector<float>& luma, int width, int height) {
 double MeasureBlur(const std::vector<float>& luma, int width, int height) {
   const std::vector<float> again = Blurred(luma, width, height, 1, kReblur_px);
   const auto gradient = [&](const std::vector<float>& v, int x, int y) {
-    const auto at = [&](int dx, int dy) {
-      return double(v[std::size_t((y + dy) * width + x + dx)]);
-    };
+    const auto at = [&](int dx, int dy) { return double(v[At(x + dx, y + dy, width)]); };
     return std::hypot(at(1, 0) - at(-1, 0), at(0, 1) - at(0, -1));
   };
   // The crests of the strongest gradients are edges.
@@ -130,8 +131,7 @@ double MeasureBlur(const std::vector<float>& luma, int width, int height) {
     for (int x = 2; x < width - 2; ++x) {
       const double g = gradient(luma, x, y);
       if (g < kStrong) continue;
-      const double gx = double(luma[std::size_t(y * width + x + 1)]) -
-                        double(luma[std::size_t(y * width + x - 1)]);
+      const double gx = double(luma[At(x + 1, y, width)]) - double(luma[At(x - 1, y, width)]);
       const bool horizontal = std::abs(gx) > 0.7 * g;
       const int dx = horizontal ? 1 : 0, dy = horizontal ? 0 : 1;
       if (gradient(luma, x + dx, y + dy) > g || gradient(luma, x - dx, y - dy) > g) continue;
@@ -188,7 +188,7 @@ void ApplyCameraLook(const CameraLook& look, const std::vector<float>& coverage,
   int x0 = picture.width, y0 = picture.height, x1 = -1, y1 = -1;
   for (int y = 0; y < picture.height; ++y) {
     for (int x = 0; x < picture.width; ++x) {
-      if (coverage[std::size_t(y * picture.width + x)] <= 0) continue;
+      if (coverage[At(x, y, picture.width)] <= 0) continue;
       x0 = std::min(x0, x);
       x1 = std::max(x1, x);
       y0 = std::min(y0, y);
@@ -203,11 +203,12 @@ void ApplyCameraLook(const CameraLook& look, const std::vector<float>& coverage,
   x1 = std::min(picture.width - 1, x1 + reach);
   y1 = std::min(picture.height - 1, y1 + reach);
   const int width = x1 - x0 + 1, height = y1 - y0 + 1;
-  std::vector<float> colour(std::size_t(width * height) * 3), share(std::size_t(width * height));
+  const std::size_t pixels = At(0, height, width);
+  std::vector<float> colour(pixels * 3), share(pixels);
   for (int y = 0; y < height; ++y) {
-    std::copy_n(picture.at(x0, y0 + y), 3 * width, colour.data() + std::size_t(3 * y * width));
-    std::copy_n(coverage.data() + std::size_t((y0 + y) * picture.width + x0), width,
-                share.data() + std::size_t(y * width));
+    std::copy_n(picture.at(x0, y0 + y), 3 * width, colour.data() + At(0, y, 3 * width));
+    std::copy_n(coverage.data() + At(x0, y0 + y, picture.width), width,
+                share.data() + At(0, y, width));
   }
   std::vector<float> soft = colour, near = share;
   if (sigma > kLeastBlur_px) {
@@ -216,7 +217,7 @@ void ApplyCameraLook(const CameraLook& look, const std::vector<float>& coverage,
   }
   for (int y = 0; y < height; ++y) {
     for (int x = 0; x < width; ++x) {
-      const std::size_t i = std::size_t(y * width + x);
+      const std::size_t i = At(x, y, width);
       if (near[i] <= 0) continue;
       // Full where half of the neighbourhood was inserted or more.
       const float mix = std::min(1.0f, 2 * near[i]);

@@ -91,7 +91,9 @@ bool FitRim(const IrisPlane& plane, Best& best) {
     Eigen::Vector3d right = Eigen::Vector3d::Zero();
     int votes = 0;
     for (int k = 0; k < 2 * kRays; ++k) {
-      const double a = RadiansFromDegrees(kFromDeg + (kToDeg - kFromDeg) * (k / 2) / (kRays - 1));
+      const int step_of_side = k / 2;  // right, left, right, ...
+      const double a =
+          RadiansFromDegrees(kFromDeg + (kToDeg - kFromDeg) * step_of_side / (kRays - 1));
       const Eigen::Vector2d out(k % 2 == 0 ? std::cos(a) : -std::cos(a), -std::sin(a));
       const double step = (kOuter - kInner) * best.radius / (kSteps - 1);
       std::array<double, kSteps> value{};
@@ -217,7 +219,7 @@ std::optional<IrisSummary> SummariseIrises(const std::vector<IrisReading>& readi
         AtDepthOf(expected.left - behind, camera, poses[f], readings[f].left->pixel) + behind;
     for (int k = 0; k < 3; ++k) {
       coordinates[std::size_t(k)].push_back(right[k]);
-      coordinates[std::size_t(3 + k)].push_back(left[k]);
+      coordinates[std::size_t(k) + 3].push_back(left[k]);
     }
     diameters.push_back(readings[f].right->radius_mm + readings[f].left->radius_mm);
     distances.push_back((left - right).norm());
@@ -229,7 +231,7 @@ std::optional<IrisSummary> SummariseIrises(const std::vector<IrisReading>& readi
   summary.frames = int(diameters.size());
   for (int k = 0; k < 3; ++k) {
     summary.pupils.right[k] = Median(coordinates[std::size_t(k)]);
-    summary.pupils.left[k] = Median(coordinates[std::size_t(3 + k)]);
+    summary.pupils.left[k] = Median(coordinates[std::size_t(k) + 3]);
   }
   summary.diameter_mm = Median(diameters);
   const double ratio = Median(ratios);
