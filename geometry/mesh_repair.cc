@@ -3,7 +3,7 @@
 
 // Every triangulation of a hole is weighed, not only those among Delaunay's: the best one, quick
 // enough for so few edges, and without the two further triangulators that CGAL would bring (a third
-// of what this file takes to compile).
+// of what its joined source took to compile).
 #define CGAL_HOLE_FILLING_DO_NOT_USE_DT3
 #define CGAL_HOLE_FILLING_DO_NOT_USE_CDT2
 #include <CGAL/Exact_predicates_inexact_constructions_kernel.h>

@@ -160,7 +160,9 @@ Status VideoEncoder::Write(const VideoFrame& frame) {
     return Failure(fmt::format("{}: got a frame of {}x{} pixels, want {}x{}", file_.final_path(),
                                turned.width, turned.height, source_.width, source_.height));
   }
-  LG_ASSIGN(const av::Frame picture, av::NewFrame(source_.width, source_.height, codec_->pix_fmt));
+  const auto made = av::NewFrame(source_.width, source_.height, codec_->pix_fmt);
+  if (!made) return Failure(file_.final_path() + ": " + made.error().message);
+  const av::Frame& picture = *made;
   if (frame.original != nullptr) {
     const ImageRgb8& decoded = stored(frame.original->rgb, decoded_copy);
     from_rgb_->FillEdited(turned, decoded, *frame.original->frame, *picture);

@@ -143,7 +143,9 @@ Status VideoReader::State::SetScaler(const AVFrame& frame) {
   auto scaler = av::ScalerToPlanes(frame.width, frame.height, format, reading);
   if (!scaler) return Failure(path + ": " + scaler.error().message);
   to_planes = *std::move(scaler);
-  LG_ASSIGN(planes, av::NewFrame(frame.width, frame.height, AV_PIX_FMT_GBRP));
+  auto made = av::NewFrame(frame.width, frame.height, AV_PIX_FMT_GBRP);
+  if (!made) return Failure(path + ": " + made.error().message);
+  planes = *std::move(made);
   scaler_format = frame.format;
   return {};
 }
