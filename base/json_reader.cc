@@ -18,14 +18,23 @@ using Json = nlohmann::json;
 constexpr int kMaxDepth = 32;
 constexpr std::size_t kMaxQuoted = 40;  // longest string that an error repeats in full
 
+std::string Shortened(std::string text) {
+  if (text.size() > kMaxQuoted) text = text.substr(0, kMaxQuoted) + "...";
+  return text;
+}
+
+// A key as an error shows it: on one line, whatever is in it.
+std::string ShownKey(const std::string& key) {
+  const std::string quoted = Json(key).dump(-1, ' ', true, Json::error_handler_t::replace);
+  return Shortened(quoted.substr(1, quoted.size() - 2));
+}
+
 // The value as an error shows it: scalars as written, containers by kind.
 std::string Shown(const Json& value) {
   if (value.is_object()) return "an object";
   if (value.is_array()) return fmt::format("an array of {}", value.size());
   if (value.is_number_float()) return fmt::format("{}", value.get<double>());
-  std::string text = value.dump(-1, ' ', true, Json::error_handler_t::replace);
-  if (text.size() > kMaxQuoted) text = text.substr(0, kMaxQuoted) + "...";
-  return text;
+  return Shortened(value.dump(-1, ' ', true, Json::error_handler_t::replace));
 }
 
 std::string WantedRange(const char* what, double min, double max) {
@@ -74,7 +83,9 @@ class ParseWatch {
   };
   std::string Path() const {
     std::string path;
-    for (const OpenObject& object : open_) path += (path.empty() ? "" : ".") + object.current;
+    for (const OpenObject& object : open_) {
+      path += (path.empty() ? "" : ".") + ShownKey(object.current);
+    }
     return path;
   }
   std::vector<OpenObject> open_;
@@ -114,8 +125,8 @@ struct JsonReader::Node {
   std::vector<std::shared_ptr<Node>> children;
 
   std::string PathOf(const std::string& key) const {
-    if (path.empty() || key.empty()) return path + key;
-    return path + "." + key;
+    if (path.empty() || key.empty()) return path + ShownKey(key);
+    return path + "." + ShownKey(key);
   }
   void MarkAsked(const std::string& key) {
     if (std::find(asked.begin(), asked.end(), key) == asked.end()) asked.push_back(key);

@@ -130,6 +130,17 @@ TEST(JsonReader, NamesAnUnknownKeyAndTheKnownOnes) {
   EXPECT_EQ(FinishMessage(json), "rx.json:OD.cyl: unknown key, want sphere, cylinder");
 }
 
+TEST(JsonReader, ShowsAnyKeyOnOneLine) {
+  JsonReader json = Read(R"({"a\nb": 1})");
+  EXPECT_EQ(FinishMessage(json), R"(rx.json:a\nb: unknown key, want none here)");
+  const auto twice = JsonReader::Parse(R"({"a\nb": 1, "a\nb": 2})", "rx.json");
+  ASSERT_FALSE(twice);
+  EXPECT_EQ(twice.error().message, R"(rx.json:a\nb: given twice, want it once)");
+  JsonReader nested = Read(R"({"k": {"a\tb": "x"}})");
+  nested.Object("k").Number("a\tb", 0, 1);
+  EXPECT_EQ(FinishMessage(nested), R"(rx.json:k.a\tb: got "x", want 0..1)");
+}
+
 TEST(JsonReader, PrefersTheMisspeltKeyToTheMissingOne) {
   JsonReader json = Read(R"({"spere": -1})");
   json.Number("sphere", -30, 30);
