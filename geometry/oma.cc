@@ -151,7 +151,7 @@ Result<std::vector<double>> OmaFile::Block(std::size_t from, const std::string& 
       double value = 0;
       if (Trim(field).empty()) continue;
       if (!ReadNumber(field, value)) {
-        return Failure(name_ + ":" + label + ": got \"" + field + "\", want a number");
+        return Failure(fmt::format("{}:{}: got \"{}\", want a number", name_, label, field));
       }
       values.push_back(value);
     }

@@ -13,6 +13,11 @@ constexpr int kFrameContrast = 6;
 // Of the shadow's factor between neighbours on the grid: a code value or two.
 constexpr float kShadowContrast = 0.02f;
 
+// Of a pixel of a tile, from the tile's own corner.
+std::size_t TileIndex(int x, int y) {
+  return std::size_t(y) * std::size_t(kTileSide) + std::size_t(x);
+}
+
 }  // namespace
 
 void PlaceSamples(const PixelBox& area, int side, const std::vector<bool>& wanted,
@@ -28,7 +33,8 @@ void PlaceSamples(const PixelBox& area, int side, const std::vector<bool>& wante
           for (int s = 0; s < side * side; ++s) {
             CameraSample sample;
             sample.x = float(x) + (float(s % side) + 0.5f) / float(side);
-            sample.y = float(y) + (float(s / side) + 0.5f) / float(side);
+            const int row = s / side;
+            sample.y = float(y) + (float(row) + 0.5f) / float(side);
             sample.pixel = std::uint16_t(pixel);
             samples.push_back(sample);
           }
@@ -59,7 +65,7 @@ std::vector<bool> PixelsToRefine(const PixelBox& area, const PixelBox& box,
                     std::abs(int(own.code) - int(other.code)) > kFrameContrast);
         }
       }
-      wanted[std::size_t((y - area.y0) * kTileSide + (x - area.x0))] = refine;
+      wanted[TileIndex(x - area.x0, y - area.y0)] = refine;
     }
   }
   return wanted;
@@ -77,16 +83,15 @@ void FillShadowGrid(const PixelBox& area, std::vector<Eigen::Vector3f>& factor,
   for (int y = 0; y < height; ++y) {
     for (int x = 0; x < width; ++x) {
       if (OnShadowGrid(x, y)) continue;
-      const std::size_t own = std::size_t(y * kTileSide + x);
+      const std::size_t own = TileIndex(x, y);
       const int dx = x % 2 != 0 && x != kTileSide - 1 ? 1 : 0;
       const int dy = y % 2 != 0 && y != kTileSide - 1 ? 1 : 0;
       if (x + dx >= width || y + dy >= height) {
         wanted[own] = true;
         continue;
       }
-      const std::size_t corners[4] = {
-          std::size_t((y - dy) * kTileSide + x - dx), std::size_t((y - dy) * kTileSide + x + dx),
-          std::size_t((y + dy) * kTileSide + x - dx), std::size_t((y + dy) * kTileSide + x + dx)};
+      const std::size_t corners[4] = {TileIndex(x - dx, y - dy), TileIndex(x + dx, y - dy),
+                                      TileIndex(x - dx, y + dy), TileIndex(x + dx, y + dy)};
       Eigen::Vector3f low = factor[corners[0]], high = low, sum = Eigen::Vector3f::Zero();
       bool alike = true;
       for (const std::size_t c : corners) {

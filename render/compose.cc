@@ -31,7 +31,7 @@ Eigen::Isometry3d ReadPose(JsonReader& json, const std::string& key) {
   }
   for (int row = 0; row < 3; ++row) {
     for (int column = 0; column < 4; ++column) {
-      pose.matrix()(row, column) = values[std::size_t(4 * row + column)];
+      pose.matrix()(row, column) = values[4 * std::size_t(row) + std::size_t(column)];
     }
   }
   const Eigen::Matrix3d r = pose.linear();

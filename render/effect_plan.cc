@@ -382,7 +382,7 @@ EffectPlan PlanEffects(const HeadScene& head, const PictureView& view, const Inp
     add(Effect::kTint, 0, head.looks[lens].tint.clear() ? none : s.tint, 0.05 * ray_ms);
   }
   // Skin and frame. The darkest skin is not looked for: a shadow may take all there is.
-  const Eigen::Vector3f skin = view.face_brightest();
+  const Eigen::Vector3f& skin = view.face_brightest();
   const bool shadows = head.options.shadow != ShadowMode::kNone;
   const auto add = [&](Effect effect, double codes, double cost_ms) {
     plan.decisions.push_back({effect, EffectRegion::kRest, 0, codes, cost_ms, true, {}});
@@ -394,8 +394,7 @@ EffectPlan PlanEffects(const HeadScene& head, const PictureView& view, const Inp
   }
   add(Effect::kLensLight, lens_light, 8000);
   Eigen::Vector3f gloss = Eigen::Vector3f::Zero();
-  for (std::size_t i = 0; i < head.frame.materials.size(); ++i) {
-    const FrameMaterial& material = head.frame.materials[i];
+  for (const FrameMaterial& material : head.frame.materials) {
     // Toward grazing everything mirrors.
     if (!material.specular.isZero()) gloss = Eigen::Vector3f::Ones();
   }

@@ -65,6 +65,7 @@ std::vector<float> Blurred(const std::vector<float>& in, int width, int height, 
                            double sigma) {
   const std::vector<float> weights = GaussianWeights(sigma);
   const int reach = int(weights.size()) / 2;
+  const float* centre = weights.data() + reach;
   std::vector<float> across(in.size(), 0), out(in.size(), 0);
   ForRows(height, [&](int y) {
     for (int x = 0; x < width; ++x) {
@@ -72,8 +73,7 @@ std::vector<float> Blurred(const std::vector<float>& in, int width, int height, 
         const int from = std::clamp(x + k, 0, width - 1);
         for (int c = 0; c < channels; ++c) {
           across[At(x, y, width) * std::size_t(channels) + std::size_t(c)] +=
-              weights[std::size_t(k + reach)] *
-              in[At(from, y, width) * std::size_t(channels) + std::size_t(c)];
+              centre[k] * in[At(from, y, width) * std::size_t(channels) + std::size_t(c)];
         }
       }
     }
@@ -81,7 +81,7 @@ std::vector<float> Blurred(const std::vector<float>& in, int width, int height, 
   ForRows(height, [&](int y) {
     for (int k = -reach; k <= reach; ++k) {
       const int from = std::clamp(y + k, 0, height - 1);
-      const float w = weights[std::size_t(k + reach)];
+      const float w = centre[k];
       for (int i = 0; i < width * channels; ++i) {
         out[At(i, y, width * channels)] += w * across[At(i, from, width * channels)];
       }

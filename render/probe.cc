@@ -29,13 +29,16 @@ struct LogPicture {
   int width = 0, height = 0;
   double step = 1;  // pixels of the photograph a pixel here
   std::vector<float> values;
+  std::size_t index(int x, int y) const {
+    return std::size_t(y) * std::size_t(width) + std::size_t(x);
+  }
   float at(double x, double y) const {
     const double column = std::clamp(x - 0.5, 0.0, double(width - 1));
     const double row = std::clamp(y - 0.5, 0.0, double(height - 1));
     const int x0 = int(column), y0 = int(row);
     const int x1 = std::min(x0 + 1, width - 1), y1 = std::min(y0 + 1, height - 1);
     const float fx = float(column - x0), fy = float(row - y0);
-    const auto v = [&](int i, int j) { return values[std::size_t(j * width + i)]; };
+    const auto v = [&](int i, int j) { return values[index(i, j)]; };
     return (1 - fy) * ((1 - fx) * v(x0, y0) + fx * v(x1, y0)) +
            fy * ((1 - fx) * v(x0, y1) + fx * v(x1, y1));
   }
@@ -46,16 +49,15 @@ LogPicture Reduce(const ImageRgb8& picture, int side) {
   out.step = std::max(1.0, double(std::max(picture.width, picture.height)) / side);
   out.width = std::max(1, int(picture.width / out.step));
   out.height = std::max(1, int(picture.height / out.step));
-  std::vector<float> sums(std::size_t(out.width * out.height), 0), counts(sums.size(), 0);
+  std::vector<float> sums(out.index(0, out.height), 0), counts(sums.size(), 0);
   for (int y = 0; y < picture.height; ++y) {
     for (int x = 0; x < picture.width; ++x) {
       const int i = std::min(int((x + 0.5) / out.step), out.width - 1);
       const int j = std::min(int((y + 0.5) / out.step), out.height - 1);
       const std::uint8_t* p = picture.at(x, y);
-      sums[std::size_t(j * out.width + i)] += 0.2126f * LinearFromCode(p[0]) +
-                                              0.7152f * LinearFromCode(p[1]) +
-                                              0.0722f * LinearFromCode(p[2]);
-      counts[std::size_t(j * out.width + i)] += 1;
+      sums[out.index(i, j)] += 0.2126f * LinearFromCode(p[0]) + 0.7152f * LinearFromCode(p[1]) +
+                               0.0722f * LinearFromCode(p[2]);
+      counts[out.index(i, j)] += 1;
     }
   }
   for (std::size_t i = 0; i < sums.size(); ++i) {
@@ -68,10 +70,10 @@ LogPicture Reduce(const ImageRgb8& picture, int side) {
       float sum = 0, n = 0;
       for (int j = std::max(0, y - 1); j <= std::min(out.height - 1, y + 1); ++j) {
         for (int i = std::max(0, x - 1); i <= std::min(out.width - 1, x + 1); ++i, ++n) {
-          sum += out.values[std::size_t(j * out.width + i)];
+          sum += out.values[out.index(i, j)];
         }
       }
-      smooth[std::size_t(y * out.width + x)] = sum / n;
+      smooth[out.index(x, y)] = sum / n;
     }
   }
   out.values = std::move(smooth);
@@ -109,7 +111,7 @@ float MeanGradient(const LogPicture& p) {
   long count = 0;
   for (int y = 1; y + 1 < p.height; ++y) {
     for (int x = 1; x + 1 < p.width; ++x, ++count) {
-      const auto v = [&](int i, int j) { return p.values[std::size_t(j * p.width + i)]; };
+      const auto v = [&](int i, int j) { return p.values[p.index(i, j)]; };
       sum += 0.5 *
              double(std::abs(v(x + 1, y) - v(x - 1, y)) + std::abs(v(x, y + 1) - v(x, y - 1))) / 2;
     }

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "render/video_sound.h"
 
+#include <fmt/format.h>
+
 #include <cmath>
 
 namespace lorgnette {
@@ -22,12 +24,13 @@ Result<std::unique_ptr<SoundCopier>> SoundCopier::Open(const std::string& source
     }
     const AVCodecID id = from->codecpar->codec_id;
     if (avformat_query_codec(output->oformat, id, FF_COMPLIANCE_NORMAL) == 0) {
-      return UsageError(output_name + ": this container cannot hold the sound (" +
-                        avcodec_get_name(id) + ") of " + source + ", want .mkv or .mov");
+      return UsageError(
+          fmt::format("{}: this container cannot hold the sound ({}) of {}, want .mkv or .mov",
+                      output_name, avcodec_get_name(id), source));
     }
     AVStream* to = avformat_new_stream(output, nullptr);
     if (to == nullptr || avcodec_parameters_copy(to->codecpar, from->codecpar) < 0) {
-      return Failure(output_name + ": the sound of " + source + " cannot be copied");
+      return Failure(fmt::format("{}: the sound of {} cannot be copied", output_name, source));
     }
     to->codecpar->codec_tag = 0;
     to->time_base = from->time_base;

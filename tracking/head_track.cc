@@ -74,7 +74,7 @@ Eigen::Isometry3d ReadPose(JsonReader& json, const std::string& key) {
     return pose;
   }
   for (int r = 0; r < 3; ++r) {
-    for (int c = 0; c < 4; ++c) pose(r, c) = v[std::size_t(4 * r + c)];
+    for (int c = 0; c < 4; ++c) pose(r, c) = v[4 * std::size_t(r) + std::size_t(c)];
   }
   if (v.size() == 16 && (v[12] != 0 || v[13] != 0 || v[14] != 0 || v[15] != 1)) {
     json.Fail(key, "got a fourth row that is not 0 0 0 1, want a rigid pose");
