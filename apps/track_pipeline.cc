@@ -74,7 +74,8 @@ std::string DefaultModelDirectory() {
 }
 
 Result<HeadTrack> TrackVideo(const TrackRequest& request) {
-  LG_ASSIGN(VideoReader reader, VideoReader::Open(request.video, {.keep_originals = false}));
+  LG_ASSIGN(VideoReader reader,
+            VideoReader::Open(request.video, {.keep_originals = false, .exact_colours = false}));
   TrackerOptions options;
   options.model_dir = request.model_dir.empty() ? DefaultModelDirectory() : request.model_dir;
   options.pd_mm = request.pd_mm;

@@ -138,16 +138,13 @@ std::optional<RayFollower::GlossRay> RayFollower::Gloss(const FramePoint& at,
   const float along = at.normal.dot(direction);
   const Eigen::Vector3f mirrored = direction - 2 * along * at.normal;
   if (!(mirrored.dot(at.normal) * along < 0)) return std::nullopt;
-  constexpr float kLift_mm = 0.1f;
-  return GlossRay{point - std::copysign(kLift_mm, along) * at.normal, mirrored,
-                  std::min(std::abs(along), 1.0f)};
+  // Smooth normals mirror rays into the flat triangles beside them.
+  constexpr float kLift_mm = 0.1f, kOwnTriangles_mm = 2;
+  return GlossRay{point - std::copysign(kLift_mm, along) * at.normal + kOwnTriangles_mm * mirrored,
+                  mirrored, std::min(std::abs(along), 1.0f)};
 }
 
-GlossEnd RayFollower::EndOf(const GlossRay& ray) const {
-  // Smooth normals mirror rays into the flat triangles beside them.
-  constexpr float kOwnTriangles_mm = 2;
-  const SceneHit hit =
-      head_.scene.Intersect(RaySet::kAll, ray.origin, ray.direction, kOwnTriangles_mm, kEndless);
+GlossEnd RayFollower::EndAt(const SceneHit& hit) const {
   if (!hit.hit()) return {true, Eigen::Vector3f::Zero()};
   if (hit.object == SceneObject::kFrame) {
     // Mirrored once more, but without a ray: as if the surface there were matt.
@@ -161,10 +158,11 @@ GlossEnd RayFollower::EndOf(const GlossRay& ray) const {
                      hit.v * skin[std::size_t(t[2])]};
 }
 
-GlossEnd RayFollower::GlossOf(const SceneHit& hit, const Eigen::Vector3f& point,
-                              const Eigen::Vector3f& direction) const {
-  const auto ray = Gloss(FrameAt(hit), point, direction);
-  return ray ? EndOf(*ray) : GlossEnd{};
+std::optional<RayFollower::GlossRay> RayFollower::GlossOf(const SceneHit& hit,
+                                                          const Eigen::Vector3f& point,
+                                                          const Eigen::Vector3f& direction) const {
+  if (!effects_.rest[Effect::kGloss]) return std::nullopt;
+  return Gloss(FrameAt(hit), point, direction);
 }
 
 Eigen::Vector3f RayFollower::Frame(const SceneHit& hit, const Eigen::Vector3f& point,
@@ -178,7 +176,9 @@ Eigen::Vector3f RayFollower::Frame(const SceneHit& hit, const Eigen::Vector3f& p
   Eigen::Vector3f colour = float(1 / kPi) * at.diffuse.cwiseProduct(FrameIrradiance(hit));
   if (effects_.rest[Effect::kGloss]) {
     if (const auto ray = Gloss(at, point, direction)) {
-      const GlossEnd end = gloss ? *gloss : EndOf(*ray);
+      const GlossEnd end = gloss ? *gloss
+                                 : EndAt(head_.scene.Intersect(RaySet::kAll, ray->origin,
+                                                               ray->direction, 0, kEndless));
       Eigen::Vector3f mirrored = end.radiance;
       if (end.away) {
         const Eigen::Vector3f world = world_from_head_ * ray->direction;

@@ -191,11 +191,11 @@ Eigen::Vector3f RayFollower::Outside(const Ray& ray, double weight, int bounces,
 
 Eigen::Vector3f RayFollower::AtHit(const SceneHit& hit, const Eigen::Vector3f& origin,
                                    const Eigen::Vector3f& direction, bool transmitted,
-                                   PixelState& pixel) const {
+                                   PixelState& pixel, const std::optional<GlossEnd>& gloss) const {
   if (!hit.hit()) return Miss(origin, direction, transmitted, pixel);
   const Eigen::Vector3f point = origin + hit.distance * direction;
   if (hit.object != SceneObject::kFrame) return Head(hit, point, pixel);
-  Eigen::Vector3f colour = Frame(hit, point, direction);
+  Eigen::Vector3f colour = Frame(hit, point, direction, gloss);
   const Eigen::Vector3f passed = FramePasses(hit, point, direction);
   if (passed.maxCoeff() > 0) {
     const SceneHit behind = head_.scene.Intersect(RaySet::kHead, point, direction, 0, kEndless);

@@ -79,21 +79,28 @@ class RayFollower {
   Eigen::Vector3f Inside(std::size_t lens, const Ray& ray, double weight, int bounces,
                          PixelState& pixel) const;
   // What a ray outside all glass meets at `hit`, or past everything when it hit nothing.
+  //   gloss  as for Frame
   Eigen::Vector3f AtHit(const SceneHit& hit, const Eigen::Vector3f& origin,
-                        const Eigen::Vector3f& direction, bool transmitted,
-                        PixelState& pixel) const;
+                        const Eigen::Vector3f& direction, bool transmitted, PixelState& pixel,
+                        const std::optional<GlossEnd>& gloss = std::nullopt) const;
 
   Eigen::Vector3f EnvironmentLight(const Eigen::Vector3f& direction) const;
   // Light of the frame toward -direction, with the temples' feathering (render/frame_shading.cc).
-  //   gloss  GlossOf, where it is known
+  //   gloss  where its mirrored ray ends, where that is known
   Eigen::Vector3f Frame(const SceneHit& hit, const Eigen::Vector3f& point,
                         const Eigen::Vector3f& direction,
                         const std::optional<GlossEnd>& gloss = std::nullopt) const;
   // Share of the light behind the frame that comes through to -direction: 0 where it is opaque.
   Eigen::Vector3f FramePasses(const SceneHit& hit, const Eigen::Vector3f& point,
                               const Eigen::Vector3f& direction) const;
-  GlossEnd GlossOf(const SceneHit& hit, const Eigen::Vector3f& point,
-                   const Eigen::Vector3f& direction) const;
+  // The ray that the frame mirrors, if it does; lifted off its own triangles.
+  struct GlossRay {
+    Eigen::Vector3f origin, direction;
+    float cosine;  // between ray and normal
+  };
+  std::optional<GlossRay> GlossOf(const SceneHit& hit, const Eigen::Vector3f& point,
+                                  const Eigen::Vector3f& direction) const;
+  GlossEnd EndAt(const SceneHit& hit) const;  // of a ray that GlossOf gave
   // The edge wall as EdgeFinish::kGround.
   Eigen::Vector3f GroundEdge() const;
   // Radiance of the frame's triangles at their corners, without highlights.
@@ -123,13 +130,8 @@ class RayFollower {
   };
   FramePoint FrameAt(const SceneHit& hit) const;
   Eigen::Vector3f FrameIrradiance(const SceneHit& hit) const;
-  struct GlossRay {
-    Eigen::Vector3f origin, direction;
-    float cosine;  // between ray and normal
-  };
   static std::optional<GlossRay> Gloss(const FramePoint& at, const Eigen::Vector3f& point,
                                        const Eigen::Vector3f& direction);
-  GlossEnd EndOf(const GlossRay& ray) const;
   // How much of the frame is left at a point: temples fade toward the ears.
   float FrameShare(const SceneHit& hit, const Eigen::Vector3f& point) const;
   // 1 at the front, 0 at the ears: how much of a temple beside this point is left.

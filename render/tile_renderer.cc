@@ -77,6 +77,10 @@ struct TileRenderer::Batch {
   RayBundle rim, main, front_reflection, back_reflection;
   std::vector<std::uint32_t> main_of, front_of, back_of;
   std::vector<Eigen::Vector3f> back_weight;
+  // Mirrored by the frame: where they end, of pixels or of a bundle's rays.
+  RayBundle gloss;
+  std::vector<std::uint32_t> gloss_of;
+  std::vector<std::optional<GlossEnd>> gloss_ends;
   // Dispersion.
   std::vector<std::uint32_t> parted;  // indices into main
   RayColumns colour_in, colour_exit;
@@ -119,10 +123,7 @@ void TileRenderer::Direct(std::size_t i, const Batch& batch, std::vector<CameraS
     passed = follower_.FramePasses(hit, point, direction);
     if (passed.minCoeff() < 1) {
       sample.kind = CameraSample::Kind::kFrame;
-      // One mirrored ray a pixel tells where the gloss ends.
-      std::optional<GlossEnd>& gloss = pixels[sample.pixel].frame_gloss;
-      if (!gloss) gloss = follower_.GlossOf(hit, point, direction);
-      sample.inserted = follower_.Frame(hit, point, direction, gloss);
+      sample.inserted = follower_.Frame(hit, point, direction, pixels[sample.pixel].frame_gloss);
     }
     if (passed.maxCoeff() > 0) {
       hit = head_.scene.Intersect(RaySet::kHead, origin, direction, 0, kEndless);
@@ -133,6 +134,49 @@ void TileRenderer::Direct(std::size_t i, const Batch& batch, std::vector<CameraS
   if (passed.maxCoeff() > 0 && hit.hit()) {
     if (sample.kind == CameraSample::Kind::kBackground) sample.kind = CameraSample::Kind::kHead;
     sample.direct = passed.cwiseProduct(follower_.FaceRatio(hit, point, pixels[sample.pixel]));
+  }
+}
+
+// Where the frame, seen directly, mirrors: one ray a pixel.
+void TileRenderer::TraceGloss(Batch& batch, const std::vector<CameraSample>& samples,
+                              std::vector<PixelState>& pixels) const {
+  batch.gloss.Clear();
+  batch.gloss_of.clear();
+  for (std::size_t i = 0; i < samples.size(); ++i) {
+    const SceneHit& hit = batch.primary.hits[i];
+    PixelState& pixel = pixels[samples[i].pixel];
+    if (hit.object != SceneObject::kFrame || batch.lens_of[i] != 0 || pixel.frame_gloss) continue;
+    const Eigen::Vector3f& direction = batch.primary.directions[i];
+    const Eigen::Vector3f point = batch.primary.origins[i] + hit.distance * direction;
+    const auto ray = follower_.GlossOf(hit, point, direction);
+    if (!ray) continue;
+    pixel.frame_gloss = GlossEnd{};
+    batch.gloss.Add(ray->origin, ray->direction);
+    batch.gloss_of.push_back(samples[i].pixel);
+  }
+  batch.gloss.Trace(head_.scene, RaySet::kAll);
+  for (std::size_t j = 0; j < batch.gloss_of.size(); ++j) {
+    pixels[batch.gloss_of[j]].frame_gloss = follower_.EndAt(batch.gloss.hits[j]);
+  }
+}
+
+// Where the frame mirrors the rays of a bundle that meet it, into batch.gloss_ends.
+void TileRenderer::TraceGloss(Batch& batch, const RayBundle& rays) const {
+  batch.gloss.Clear();
+  batch.gloss_of.clear();
+  batch.gloss_ends.assign(rays.hits.size(), std::nullopt);
+  for (std::size_t j = 0; j < rays.hits.size(); ++j) {
+    const SceneHit& hit = rays.hits[j];
+    if (hit.object != SceneObject::kFrame) continue;
+    const Eigen::Vector3f& direction = rays.directions[j];
+    const auto ray = follower_.GlossOf(hit, rays.origins[j] + hit.distance * direction, direction);
+    if (!ray) continue;
+    batch.gloss.Add(ray->origin, ray->direction);
+    batch.gloss_of.push_back(std::uint32_t(j));
+  }
+  batch.gloss.Trace(head_.scene, RaySet::kAll);
+  for (std::size_t k = 0; k < batch.gloss_of.size(); ++k) {
+    batch.gloss_ends[batch.gloss_of[k]] = follower_.EndAt(batch.gloss.hits[k]);
   }
 }
 
@@ -382,6 +426,7 @@ void TileRenderer::TraceLens(std::size_t lens, Batch& batch, std::vector<CameraS
                   (r.second_point - r.first_point).norm());
   }
   batch.rim.Trace(head_.scene, RaySet::kFrame);
+  TraceGloss(batch, batch.rim);
 
   const LensLook& look = follower_.look(lens);
   batch.main.Clear();
@@ -407,7 +452,8 @@ void TileRenderer::TraceLens(std::size_t lens, Batch& batch, std::vector<CameraS
         const Eigen::Vector3f& in_glass = batch.rim.directions[j];
         const Eigen::Vector3f point = batch.rim.origins[j] + hit.distance * in_glass;
         sample.kind = CameraSample::Kind::kFrame;
-        sample.inserted += r.entered.cwiseProduct(follower_.Frame(hit, point, in_glass));
+        sample.inserted +=
+            r.entered.cwiseProduct(follower_.Frame(hit, point, in_glass, batch.gloss_ends[j]));
         continue;
       }
     }
@@ -470,6 +516,7 @@ void TileRenderer::TraceLens(std::size_t lens, Batch& batch, std::vector<CameraS
     batch.rim.Add(to_head(from), head_from_lens * along, float(crossing->t));
   }
   batch.rim.Trace(head_.scene, RaySet::kFrame);
+  TraceGloss(batch, batch.rim);
   const Eigen::Vector3f wall = follower_.GroundEdge();
   batch.back_weight.clear();
   std::size_t kept = 0;
@@ -486,7 +533,8 @@ void TileRenderer::TraceLens(std::size_t lens, Batch& batch, std::vector<CameraS
       if (const SceneHit& hit = batch.rim.hits[at]; hit.hit()) {
         const Eigen::Vector3f& direction = batch.rim.directions[at];
         const Eigen::Vector3f point = batch.rim.origins[at] + hit.distance * direction;
-        sample.inserted += weight.cwiseProduct(follower_.Frame(hit, point, direction));
+        sample.inserted +=
+            weight.cwiseProduct(follower_.Frame(hit, point, direction, batch.gloss_ends[at]));
         continue;
       }
     }
@@ -523,13 +571,14 @@ void TileRenderer::TraceLens(std::size_t lens, Batch& batch, std::vector<CameraS
   const auto add = [&](std::uint32_t k, const RayBundle& bundle, std::size_t j,
                        const Eigen::Vector3f& weight, bool transmitted) {
     CameraSample& sample = samples[batch.regular[k].sample];
-    sample.inserted +=
-        weight.cwiseProduct(follower_.AtHit(bundle.hits[j], bundle.origins[j], bundle.directions[j],
-                                            transmitted, pixels[sample.pixel]));
+    sample.inserted += weight.cwiseProduct(
+        follower_.AtHit(bundle.hits[j], bundle.origins[j], bundle.directions[j], transmitted,
+                        pixels[sample.pixel], batch.gloss_ends[j]));
   };
   const bool other_lens_near = head_.lenses.size() > 1 && follower_.lenses_overlap();
   const bool colours = PartsColours(lens);
   batch.parted.clear();
+  TraceGloss(batch, batch.main);
   for (std::size_t j = 0; j < batch.main_of.size(); ++j) {
     const std::uint32_t k = batch.main_of[j];
     const Regular& r = batch.regular[k];
@@ -555,10 +604,12 @@ void TileRenderer::TraceLens(std::size_t lens, Batch& batch, std::vector<CameraS
     add(k, batch.main, j, r.through, true);
   }
   if (!batch.parted.empty()) TraceColours(lens, batch, samples, pixels);
+  TraceGloss(batch, batch.front_reflection);
   for (std::size_t j = 0; j < batch.front_of.size(); ++j) {
     add(batch.front_of[j], batch.front_reflection, j, batch.regular[batch.front_of[j]].enter,
         false);
   }
+  TraceGloss(batch, batch.back_reflection);
   for (std::size_t j = 0; j < batch.back_of.size(); ++j) {
     add(batch.back_of[j], batch.back_reflection, j, batch.back_weight[j], true);
   }
@@ -583,6 +634,7 @@ void TileRenderer::Trace(std::vector<CameraSample>& samples, std::uint8_t conten
       std::fill(batch.lens_of.begin(), batch.lens_of.end(), std::uint8_t(3));
     }
   }
+  TraceGloss(batch, samples, pixels);
   for (std::size_t i = 0; i < samples.size(); ++i) {
     if (batch.lens_of[i] == 3) {
       TraceExactly(i, batch, samples, pixels);

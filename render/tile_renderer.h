@@ -12,6 +12,8 @@
 
 namespace lorgnette {
 
+struct RayBundle;
+
 // One camera ray, and what it brought.
 struct CameraSample {
   float x = 0, y = 0;       // pixel position
@@ -47,6 +49,9 @@ class TileRenderer {
   void Share(std::size_t lens, float enter, float leave, const Eigen::Vector3f& direction,
              Regular& ray) const;
   void TracePrimary(RaySet set, Batch& batch, std::vector<CameraSample>& samples) const;
+  void TraceGloss(Batch& batch, const std::vector<CameraSample>& samples,
+                  std::vector<PixelState>& pixels) const;
+  void TraceGloss(Batch& batch, const RayBundle& rays) const;
   void TraceLens(std::size_t lens, Batch& batch, std::vector<CameraSample>& samples,
                  std::vector<PixelState>& pixels) const;
   // The main rays whose colours part (batch.parted): each wavelength its own way. What is mirrored

@@ -115,8 +115,12 @@ ColourReading ReadingOf(const AVFrame& frame) {
 
 namespace {
 
+constexpr int kExact =
+    SWS_BICUBIC | SWS_ACCURATE_RND | SWS_FULL_CHR_H_INT | SWS_FULL_CHR_H_INP | SWS_BITEXACT;
+
 Result<Scaler> MakeScaler(int width, int height, AVPixelFormat from, bool from_full,
-                          AVPixelFormat to, bool to_full, const ColourReading& c, bool to_rgb) {
+                          AVPixelFormat to, bool to_full, const ColourReading& c, bool to_rgb,
+                          int flags = kExact) {
   Scaler scaler(sws_alloc_context());
   SwsContext* s = scaler.get();
   av_opt_set_int(s, "srcw", width, 0);
@@ -127,9 +131,7 @@ Result<Scaler> MakeScaler(int width, int height, AVPixelFormat from, bool from_f
   av_opt_set_int(s, "dst_format", to, 0);
   av_opt_set_int(s, "src_range", from_full, 0);
   av_opt_set_int(s, "dst_range", to_full, 0);
-  av_opt_set_int(
-      s, "sws_flags",
-      SWS_BICUBIC | SWS_ACCURATE_RND | SWS_FULL_CHR_H_INT | SWS_FULL_CHR_H_INP | SWS_BITEXACT, 0);
+  av_opt_set_int(s, "sws_flags", flags, 0);
   const AVPixFmtDescriptor* yuv = av_pix_fmt_desc_get(to_rgb ? from : to);
   if (yuv != nullptr && yuv->log2_chroma_w > 0) {
     const char* side = to_rgb ? "src_h_chr_pos" : "dst_h_chr_pos";
@@ -158,6 +160,16 @@ Result<Scaler> ScalerToPlanes(int width, int height, AVPixelFormat format, const
 
 Result<Scaler> ScalerToRgb(int width, int height, AVPixelFormat format, const ColourReading& c) {
   return MakeScaler(width, height, format, c.full_range, AV_PIX_FMT_RGB24, true, c, true);
+}
+
+Result<Scaler> ScalerToQuickRgb(int width, int height, AVPixelFormat format,
+                                const ColourReading& c) {
+  return MakeScaler(width, height, format, c.full_range, AV_PIX_FMT_RGB24, true, c, true,
+                    SWS_POINT);
+}
+
+bool HasQuickRgb(AVPixelFormat format, int height) {
+  return (format == AV_PIX_FMT_YUV420P || format == AV_PIX_FMT_YUV422P) && height % 2 == 0;
 }
 
 Result<Scaler> ScalerFromRgb(int width, int height, AVPixelFormat format, const ColourReading& c) {

@@ -65,6 +65,10 @@ int MatrixOf(AVColorSpace space, int width, int height);
 // packed RGB24 to `format`. To packed RGB24, from colours and greys without loss.
 Result<Scaler> ScalerToPlanes(int width, int height, AVPixelFormat format, const ColourReading& c);
 Result<Scaler> ScalerToRgb(int width, int height, AVPixelFormat format, const ColourReading& c);
+// To packed RGB24 by libswscale's shortest way; see HasQuickRgb for what it is there for.
+Result<Scaler> ScalerToQuickRgb(int width, int height, AVPixelFormat format,
+                                const ColourReading& c);
+bool HasQuickRgb(AVPixelFormat format, int height);
 Result<Scaler> ScalerFromRgb(int width, int height, AVPixelFormat format, const ColourReading& c);
 
 }  // namespace av

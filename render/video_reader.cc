@@ -140,14 +140,31 @@ Status VideoReader::State::SetScaler(const AVFrame& frame) {
   reading = av::ReadingOf(frame);
   bool full_range = false;
   const AVPixelFormat format = av::PlainFormat(frame.format, &full_range);
-  auto scaler = av::ScalerToPlanes(frame.width, frame.height, format, reading);
-  if (!scaler) return Failure(path + ": " + scaler.error().message);
-  to_planes = *std::move(scaler);
+  const bool quick = !options.exact_colours && av::HasQuickRgb(format, frame.height);
+  auto converter = quick ? av::ScalerToQuickRgb(frame.width, frame.height, format, reading)
+                           : av::ScalerToPlanes(frame.width, frame.height, format, reading);
+  if (!converter) return Failure(path + ": " + converter.error().message);
+  scaler = *std::move(converter);
+  planes.reset();
+  scaler_format = frame.format;
+  if (quick) return {};
   auto made = av::NewFrame(frame.width, frame.height, AV_PIX_FMT_GBRP);
   if (!made) return Failure(path + ": " + made.error().message);
   planes = *std::move(made);
-  scaler_format = frame.format;
   return {};
+}
+
+ImageRgb8 VideoReader::State::RgbOf(const AVFrame& frame) const {
+  if (planes == nullptr) {
+    ImageRgb8 rgb(frame.width, frame.height);
+    std::uint8_t* pixels = rgb.data.data();
+    const int stride = 3 * rgb.width;
+    sws_scale(scaler.get(), frame.data, frame.linesize, 0, frame.height, &pixels, &stride);
+    return rgb;
+  }
+  sws_scale(scaler.get(), frame.data, frame.linesize, 0, frame.height, planes->data,
+            planes->linesize);
+  return RgbOfPlanes(*planes);
 }
 
 Result<std::optional<VideoFrame>> VideoReader::State::NextFrame() {
@@ -175,11 +192,8 @@ Result<std::optional<VideoFrame>> VideoReader::State::NextFrame() {
                                stored.width, stored.height, Where()));
   }
   LG_RETURN_IF_ERROR(SetScaler(stored));
-  sws_scale(to_planes.get(), stored.data, stored.linesize, 0, stored.height, planes->data,
-            planes->linesize);
-
   VideoFrame frame;
-  frame.rgb = Oriented(RgbOfPlanes(*planes), orientation);
+  frame.rgb = Oriented(RgbOf(stored), orientation);
   frame.pts = stored.best_effort_timestamp;
   if (frame.pts == AV_NOPTS_VALUE) {  // raw streams: by the frame rate
     frame.pts = av_rescale_q(frames_read, av_inv_q(frame_rate), time_base);

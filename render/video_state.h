@@ -28,8 +28,8 @@ struct VideoReader::State {
   AVRational time_base{1, 25};
   AVRational frame_rate{25, 1};
   av::Packet packet;
-  av::Scaler to_planes;
-  av::Frame planes;  // GBRP of the picture at hand
+  av::Scaler scaler;  // for pictures of scaler_format
+  av::Frame planes;   // GBRP of the picture at hand; null where the scaler packs its pixels itself
   av::ColourReading reading;
   int scaler_format = AV_PIX_FMT_NONE;
   bool flushed = false;
@@ -41,6 +41,7 @@ struct VideoReader::State {
   Result<std::optional<VideoFrame>> NextFrame();
   Status ReadPacket();
   Status SetScaler(const AVFrame& frame);
+  ImageRgb8 RgbOf(const AVFrame& frame) const;
   std::string Where() const;  // "at 3.20 s", for errors
 };
 

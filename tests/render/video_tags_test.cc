@@ -149,37 +149,71 @@ struct ColourCase {
   bool full;
 };
 
-class VideoColour : public VideoTest, public testing::WithParamInterface<ColourCase> {};
-
 // Flat fields of known Y, Cb, Cr, stored without loss, against the closed form of the standards.
-TEST_P(VideoColour, MatrixAndRangeOfTheTagsAreHonoured) {
-  SKIP_WITHOUT_FFMPEG();
-  const ColourCase& c = GetParam();
-  constexpr int kFields[][3] = {{81, 100, 160}, {150, 120, 110}, {60, 160, 120}, {180, 128, 128}};
-  constexpr int kSize = 16;
-  std::string raw;
-  for (const auto& field : kFields) {
-    for (const int value : field) raw.append(kSize * kSize, static_cast<char>(value));
+class VideoColour : public VideoTest, public testing::WithParamInterface<ColourCase> {
+ protected:
+  static constexpr int kFields[][3] = {
+      {81, 100, 160}, {150, 120, 110}, {60, 160, 120}, {180, 128, 128}};
+
+  // One frame a field.
+  bool WriteFields(const std::string& pixel_format, int chroma_side) {
+    constexpr int kSide = 16;
+    std::string raw;
+    for (const auto& field : kFields) {
+      for (int k = 0; k < 3; ++k) {
+        const int side = k == 0 ? kSide : chroma_side;
+        raw.append(std::size_t(side) * std::size_t(side), static_cast<char>(field[k]));
+      }
+    }
+    return WriteFileAtomically(Path("in.yuv"), raw) &&
+           Ffmpeg("-f rawvideo -pix_fmt " + pixel_format +
+                  " -s 16x16 -i in.yuv -c:v ffv1 -color_range " +
+                  std::string(GetParam().full ? "pc" : "tv") + " -colorspace " + GetParam().tag +
+                  " in.mkv");
   }
-  ASSERT_TRUE(WriteFileAtomically(Path("in.yuv"), raw));
-  ASSERT_TRUE(Ffmpeg("-f rawvideo -pix_fmt yuv444p -s 16x16 -i in.yuv -c:v ffv1 -color_range " +
-                     std::string(c.full ? "pc" : "tv") + " -colorspace " + c.tag + " in.mkv"));
-  const auto frames = ReadAll(Path("in.mkv"));
-  ASSERT_TRUE(frames) << frames.error().message;
-  ASSERT_EQ(frames->size(), std::size(kFields));
-  for (std::size_t i = 0; i < frames->size(); ++i) {
+
+  void ExpectFields(const std::vector<VideoFrame>& frames, double within);
+};
+
+void VideoColour::ExpectFields(const std::vector<VideoFrame>& frames, double within) {
+  const ColourCase& c = GetParam();
+  ASSERT_EQ(frames.size(), std::size(kFields));
+  for (std::size_t i = 0; i < frames.size(); ++i) {
     const double y = c.full ? kFields[i][0] / 255.0 : (kFields[i][0] - 16) / 219.0;
     const double cb = (kFields[i][1] - 128) / (c.full ? 255.0 : 224.0);
     const double cr = (kFields[i][2] - 128) / (c.full ? 255.0 : 224.0);
     const double r = y + 2 * (1 - c.kr) * cr;
     const double b = y + 2 * (1 - c.kb) * cb;
     const double g = (y - c.kr * r - c.kb * b) / (1 - c.kr - c.kb);
-    const std::uint8_t* p = (*frames)[i].rgb.at(5, 5);
-    // Half a code of rounding, and less than half of swscale's 13-bit coefficients.
-    EXPECT_NEAR(p[0], 255 * r, 1.0) << i;
-    EXPECT_NEAR(p[1], 255 * g, 1.0) << i;
-    EXPECT_NEAR(p[2], 255 * b, 1.0) << i;
+    const std::uint8_t* p = frames[i].rgb.at(5, 5);
+    EXPECT_NEAR(p[0], 255 * r, within) << i;
+    EXPECT_NEAR(p[1], 255 * g, within) << i;
+    EXPECT_NEAR(p[2], 255 * b, within) << i;
   }
+}
+
+TEST_P(VideoColour, QuickReadingHonoursTheTagsToo) {
+  SKIP_WITHOUT_FFMPEG();
+  ASSERT_TRUE(WriteFields("yuv420p", 8));
+  auto reader = VideoReader::Open(Path("in.mkv"), {.exact_colours = false});
+  ASSERT_TRUE(reader);
+  std::vector<VideoFrame> frames;
+  while (true) {
+    auto frame = reader->Next();
+    ASSERT_TRUE(frame);
+    if (!*frame) break;
+    frames.push_back(**std::move(frame));
+  }
+  ExpectFields(frames, 3.0);
+}
+
+TEST_P(VideoColour, MatrixAndRangeOfTheTagsAreHonoured) {
+  SKIP_WITHOUT_FFMPEG();
+  ASSERT_TRUE(WriteFields("yuv444p", 16));
+  const auto frames = ReadAll(Path("in.mkv"));
+  ASSERT_TRUE(frames) << frames.error().message;
+  // Half a code of rounding, and less than half of swscale's 13-bit coefficients.
+  ExpectFields(*frames, 1.0);
   // The tags survive a copy, and the colours with them.
   ASSERT_TRUE(Copy(Path("in.mkv"), Path("out.mkv")));
   const auto in = av::OpenInput(Path("in.mkv")), out = av::OpenInput(Path("out.mkv"));
