@@ -7,8 +7,8 @@ Result<std::optional<CalibratedCamera>> CameraForVideo(const std::string& path, 
                                                        int height) {
   if (path.empty()) return std::optional<CalibratedCamera>();
   LG_ASSIGN(const CalibratedCamera camera, ReadCameraFile(path));
-  LG_ASSIGN(CalibratedCamera scaled, ScaledTo(camera, width, height, path));
-  return std::optional(std::move(scaled));
+  LG_ASSIGN(const CalibratedCamera scaled, ScaledTo(camera, width, height, path));
+  return std::optional(scaled);
 }
 
 std::optional<PictureRectifier> RectifierFor(const Camera& camera,

@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
 // lorgnette serve: the optician's page on this machine.
 #include <fmt/format.h>
-#include <signal.h>
 
 #include <CLI/App.hpp>
 #include <CLI/Config.hpp>
 #include <CLI/Formatter.hpp>
+#include <csignal>
 #include <memory>
 #include <ostream>
 
