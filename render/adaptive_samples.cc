@@ -13,11 +13,6 @@ constexpr int kFrameContrast = 6;
 // Of the shadow's factor between neighbours on the grid: a code value or two.
 constexpr float kShadowContrast = 0.02f;
 
-// Of a pixel of a tile, from the tile's own corner.
-std::size_t TileIndex(int x, int y) {
-  return std::size_t(y) * std::size_t(kTileSide) + std::size_t(x);
-}
-
 }  // namespace
 
 void PlaceSamples(const PixelBox& area, int side, const std::vector<bool>& wanted,

@@ -240,7 +240,7 @@ RenderCounts Compositor::Draw(const Sitting& sitting, const PictureEffects& effe
     std::vector<bool> wanted(std::size_t(kTileSide) * kTileSide);
     for (int y = 0; y < kTileSide; ++y) {
       for (int x = 0; x < kTileSide; ++x) {
-        wanted[std::size_t(y * kTileSide + x)] = OnShadowGrid(x, y);
+        wanted[TileIndex(x, y)] = OnShadowGrid(x, y);
       }
     }
     factor.assign(wanted.size(), Eigen::Vector3f::Ones());
@@ -257,7 +257,7 @@ RenderCounts Compositor::Draw(const Sitting& sitting, const PictureEffects& effe
     }
     for (int y = area.y0; y < area.y1; ++y) {
       for (int x = area.x0; x < area.x1; ++x) {
-        const std::size_t pixel = std::size_t((y - area.y0) * kTileSide + (x - area.x0));
+        const std::size_t pixel = TileIndex(x - area.x0, y - area.y0);
         glance(x, y) = {kind[pixel], 0};
         if ((factor[pixel].array() == 1.0f).all()) continue;
         ++counts_of[i].shadowed_pixels;
@@ -298,7 +298,7 @@ RenderCounts Compositor::Draw(const Sitting& sitting, const PictureEffects& effe
     RenderCounts& count = counts_of[i];
     for (int y = area.y0; y < area.y1; ++y) {
       for (int x = area.x0; x < area.x1; ++x) {
-        const std::size_t pixel = std::size_t((y - area.y0) * kTileSide + (x - area.x0));
+        const std::size_t pixel = TileIndex(x - area.x0, y - area.y0);
         if (!wanted.empty() && !wanted[pixel]) continue;
         const PixelSum& sum = sums[pixel];
         if (!refine) {

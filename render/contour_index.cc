@@ -101,7 +101,7 @@ bool ContourIndex::InGrid(double x, double y) const {
 double ContourIndex::CentreDistance(double x, double y) const {
   const int column = std::clamp(int((x - grid_low_.x()) * inverse_cell_), 0, columns_ - 1);
   const int row = std::clamp(int((y - grid_low_.y()) * inverse_cell_), 0, rows_ - 1);
-  return double(distance_[std::size_t(row * columns_ + column)]);
+  return double(distance_[std::size_t(row) * std::size_t(columns_) + std::size_t(column)]);
 }
 
 bool ContourIndex::Contains(double x, double y) const {

@@ -108,13 +108,16 @@ Eigen::Vector3f Environment::Mean() const {
 
 BrightestLight::BrightestLight(const Environment& environment) {
   const ImageRgbF& map = environment.map();
+  const auto cell = [](int column, int row) {
+    return std::size_t(row) * std::size_t(kColumns) + std::size_t(column);
+  };
   std::vector<Eigen::Vector3f> own(std::size_t(kColumns) * kRows, Eigen::Vector3f::Zero());
   // Every cell holds the texels that reach into it, and one more all around: radiance is bilinear.
   for (int row = 0; row < kRows; ++row) {
     const int y0 = std::max(0, row * map.height / kRows - 1);
     const int y1 = std::min(map.height - 1, (row + 1) * map.height / kRows + 1);
     for (int column = 0; column < kColumns; ++column) {
-      Eigen::Vector3f& most = own[std::size_t(row * kColumns + column)];
+      Eigen::Vector3f& most = own[cell(column, row)];
       const int x0 = column * map.width / kColumns - 1;
       const int x1 = (column + 1) * map.width / kColumns + 1;
       for (int y = y0; y <= y1; ++y) {
@@ -135,10 +138,10 @@ BrightestLight::BrightestLight(const Environment& environment) {
       Eigen::Vector3f most = Eigen::Vector3f::Zero();
       for (int y = std::max(0, row - 1); y <= std::min(kRows - 1, row + 1); ++y) {
         for (int x = column - reach; x <= column + reach; ++x) {
-          most = most.cwiseMax(own[std::size_t(y * kColumns + (x + kColumns) % kColumns)]);
+          most = most.cwiseMax(own[cell((x + kColumns) % kColumns, y)]);
         }
       }
-      cells_[std::size_t(row * kColumns + column)] = most;
+      cells_[cell(column, row)] = most;
     }
   }
 }
@@ -148,8 +151,8 @@ const Eigen::Vector3f& BrightestLight::Near(const Eigen::Vector3f& d) const {
   const float lat = FastAtan2(d.y(), std::sqrt(d.x() * d.x() + d.z() * d.z()));
   const int column = int((lon * float(0.5 / kPi) + 0.5f) * kColumns);
   const int row = int((0.5f - lat * float(1 / kPi)) * kRows);
-  return cells_[std::size_t(std::clamp(row, 0, kRows - 1) * kColumns +
-                            std::clamp(column, 0, kColumns - 1))];
+  return cells_[std::size_t(std::clamp(row, 0, kRows - 1)) * std::size_t(kColumns) +
+                std::size_t(std::clamp(column, 0, kColumns - 1))];
 }
 
 }  // namespace lorgnette

@@ -43,10 +43,11 @@ class WeightTable {
   WeightTable() {
     for (int i = 0; i <= kSteps; ++i) ComputeWeights(float(i) / kSteps, weights_[i]);
   }
-  const float* At(float f) const { return weights_[int(f * kSteps + 0.5f)]; }
+  const float* At(float f) const { return weights_[int(f * kSteps + kHalf)]; }  // the nearest
 
  private:
   static constexpr int kSteps = 1024;
+  static constexpr float kHalf = 0.5f;
   float weights_[kSteps + 1][kTaps];
 };
 

@@ -14,6 +14,10 @@
 namespace lorgnette {
 
 inline constexpr int kTileSide = 16;  // pixels
+// Of a pixel of a tile, from the tile's own corner.
+inline std::size_t TileIndex(int x, int y) {
+  return std::size_t(y) * std::size_t(kTileSide) + std::size_t(x);
+}
 
 enum TileContent : std::uint8_t {
   kTileShadow = 1,  // face that the frame can darken

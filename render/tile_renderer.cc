@@ -95,7 +95,6 @@ TileRenderer::TileRenderer(const HeadScene& head, const RayFollower& follower, c
       camera_(camera),
       head_from_camera_(camera_from_head.rotation().transpose().cast<float>()),
       eye_(camera_from_head.inverse().translation()) {}
-TileRenderer::~TileRenderer() = default;
 
 void TileRenderer::TracePrimary(RaySet set, Batch& batch,
                                 std::vector<CameraSample>& samples) const {

@@ -36,7 +36,6 @@ class TileRenderer {
  public:
   TileRenderer(const HeadScene& head, const RayFollower& follower, const Camera& camera,
                const Eigen::Isometry3d& camera_from_head);
-  ~TileRenderer();
 
   // Traces the samples. Neighbours in the list should be neighbours in the picture.
   //   content  TileContent bits of the tile that holds them all

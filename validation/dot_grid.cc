@@ -26,8 +26,9 @@ ImageRgbF DrawGrid(const Camera& camera, double depth_mm, const DotGridOptions& 
     for (int x = 0; x < image.width; ++x) {
       double sum = 0;
       for (int s = 0; s < kSub * kSub; ++s) {
+        const int column = s % kSub, row = s / kSub;
         const Eigen::Vector3d d =
-            depth_mm * camera.Direction(x + (s % kSub + 0.5) / kSub, y + (s / kSub + 0.5) / kSub);
+            depth_mm * camera.Direction(x + (column + 0.5) / kSub, y + (row + 0.5) / kSub);
         const double r2 = std::pow(wrapped(d.x()), 2) + std::pow(wrapped(d.y()), 2);
         sum += std::exp(-r2 / (2 * options.dot_mm * options.dot_mm));
       }

@@ -216,6 +216,7 @@ Result<CostStudy> MagnificationStudy(const Lens& lens, const LensView& view,
     volatile double sink = 0;
     CostPoint point = Timed(
         method, "", [&] { sink = magnification(kHeights_mm[1]); }, calls, stopwatch);
+    static_cast<void>(sink);
     double sum[2] = {0, 0}, worst[2] = {0, 0};
     for (std::size_t i = 0; i < truth.size(); ++i) {
       const double relative = std::abs(magnification(kHeights_mm[i]) - truth[i]);

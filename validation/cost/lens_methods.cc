@@ -165,7 +165,7 @@ class DisplacementMap {
         status_(in_.c[0].size()),
         nodes_(in_.c[0].size()),
         exits_(rays.size()) {
-    const Eigen::Vector2d first = rays.slope(0);
+    const Eigen::Vector2d& first = rays.slope(0);
     for (int y = 0; y < rows_; ++y) {
       for (int x = 0; x < columns_; ++x) {
         const Eigen::Vector2d slope =

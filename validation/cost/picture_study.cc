@@ -121,9 +121,8 @@ Result<CostStudy> PictureStudy(const WornScene& scene, const CostOptions& option
     }
   }
   for (const int factor : {2, 4}) {
-    CompositorOptions o = standard;
-    LG_RETURN_IF_ERROR(
-        add("smaller picture, enlarged", fmt::format("1/{} of the side", factor), o, factor));
+    LG_RETURN_IF_ERROR(add("smaller picture, enlarged", fmt::format("1/{} of the side", factor),
+                           standard, factor));
   }
   // The effects of the paper's model, one by one.
   for (int k = 0; k < kEffectCount; ++k) {

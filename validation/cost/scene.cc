@@ -36,9 +36,10 @@ TriangleMesh MadeFace() {
   TriangleMesh mesh;
   constexpr double kStep_mm = 1.5;
   constexpr int kColumns = 101, kRows = 115;  // x to 75, y from -95 to 76
+  constexpr int kMiddle = kColumns / 2;
   for (int j = 0; j < kRows; ++j) {
     for (int i = 0; i < kColumns; ++i) {
-      const double x = kStep_mm * (i - kColumns / 2), y = kStep_mm * j - 95;
+      const double x = kStep_mm * (i - kMiddle), y = kStep_mm * j - 95;
       mesh.positions.emplace_back(x, y, SkinHeight(x, y));
     }
   }
@@ -102,8 +103,9 @@ Result<ImageRgbF> DrawInput(const WornScene& scene) {
     for (int x = 0; x < image.width; ++x) {
       Eigen::Vector3d sum = Eigen::Vector3d::Zero();
       for (int s = 0; s < kSub * kSub; ++s) {
+        const int column = s % kSub, row = s / kSub;
         const Eigen::Vector3d in_camera =
-            scene.camera.Direction(x + (s % kSub + 0.5) / kSub, y + (s / kSub + 0.5) / kSub);
+            scene.camera.Direction(x + (column + 0.5) / kSub, y + (row + 0.5) / kSub);
         const Eigen::Vector3d d = (head_from_camera.linear() * in_camera).normalized();
         const SceneHit hit = rays.Intersect(RaySet::kHead, eye.cast<float>(), d.cast<float>(), 0,
                                             std::numeric_limits<float>::infinity());

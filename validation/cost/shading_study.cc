@@ -144,8 +144,8 @@ class LightSampler {
         std::upper_bound(cumulative_.begin(), cumulative_.end(), wanted) - cumulative_.begin());
     const double before = i > 0 ? cumulative_[i - 1] : 0;
     const double along = (wanted - before) / (cumulative_[i] - before);
-    return environment_.Direction(double(i % std::size_t(width_)) + along,
-                                  double(i / std::size_t(width_)) + v);
+    const std::size_t row = i / std::size_t(width_), column = i % std::size_t(width_);
+    return environment_.Direction(double(column) + along, double(row) + v);
   }
   // Density per steradian.
   double Density(const Eigen::Vector3f& direction) const {
@@ -381,8 +381,9 @@ Result<CostStudy> ShadingStudy(const WornScene& worn, const CostOptions& options
     // Sets of lit directions, so that neighbours do not share their error.
     std::vector<std::vector<Eigen::Vector3f>> lit(kRotations);
     for (std::uint32_t r = 0; r < kRotations; ++r) {
-      for (int i = 0; i < rays - rays / 2; ++i) {
-        const double u = std::fmod((i + double(r) / kRotations) / double(rays - rays / 2), 1);
+      const int others = rays - rays / 2;
+      for (int i = 0; i < others; ++i) {
+        const double u = std::fmod((i + double(r) / kRotations) / double(others), 1);
         const double v = std::fmod(0.5 + std::numbers::phi * (i + 1) + r * 0.123, 1);
         lit[r].push_back(sampler.Sample(u, v));
       }
@@ -424,7 +425,7 @@ Result<CostStudy> ShadingStudy(const WornScene& worn, const CostOptions& options
   Transfer transfer;
   const Timing bake = TimeOf([&] { transfer = BakeTransfer(scene, worn.face, 1024); }, {1, 1, 0});
   for (const int degree : {2, 3, 4}) {
-    const std::size_t terms = std::size_t((degree + 1) * (degree + 1));
+    const std::size_t terms = std::size_t(degree + 1) * std::size_t(degree + 1);
     std::vector<Eigen::Vector3f> relit(worn.face.positions.size());
     const auto relight = [&] {
       const HeadLight light = LightAt(sphere, cells, scene.world_from_head, 1);
