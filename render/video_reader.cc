@@ -142,7 +142,7 @@ Status VideoReader::State::SetScaler(const AVFrame& frame) {
   const AVPixelFormat format = av::PlainFormat(frame.format, &full_range);
   const bool quick = !options.exact_colours && av::HasQuickRgb(format, frame.height);
   auto converter = quick ? av::ScalerToQuickRgb(frame.width, frame.height, format, reading)
-                           : av::ScalerToPlanes(frame.width, frame.height, format, reading);
+                         : av::ScalerToPlanes(frame.width, frame.height, format, reading);
   if (!converter) return Failure(path + ": " + converter.error().message);
   scaler = *std::move(converter);
   planes.reset();

@@ -9,6 +9,7 @@
 #include "base/check.h"
 #include "base/units.h"
 #include "tracking/bundle.h"
+#include "tracking/drift_limit.h"
 #include "tracking/face_model.h"
 
 namespace lorgnette {
@@ -27,6 +28,9 @@ constexpr double kFirstSigma = 0.3, kLeastSigma = 0.15;  // of a sighting, crop 
 // A key frame's errors are like those of others: they count as if this squared were one.
 constexpr double kAlikeFrames = 4;
 constexpr double kGoodWeight = 10;  // of the inliers of a pose that can be relied on
+// Between two frames of a clip the landmarks' poses err by a few degrees; texture that says more
+// was matched wrongly, or has drifted.
+constexpr double kLandmarksDeny = RadiansFromDegrees(6), kMostDrift = RadiansFromDegrees(3);
 
 struct Sighting {
   std::size_t view, anchor;
@@ -50,7 +54,7 @@ class Anchorer {
   double Bundle(double focal_log_sigma);
   void FitPoses(AnchoredClip& clip) const;
   // Frames that look like none of the views (a grimace, a blur) are tied to their neighbours in
-  // time, from both sides.
+  // time, from both sides, and held near to what the landmarks say.
   void RepairPoses(AnchoredClip& clip) const;
 
   const Camera& camera() const { return camera_; }
@@ -194,7 +198,9 @@ void Anchorer::ChooseViews() {
     const std::vector<Sighting> tied = Match(best, &pose);
     if (tied.empty()) continue;
     const PoseFit fit = Fit(tied, pose, CropPixel(best));
-    if (fit.inlier_weight >= kGoodWeight) AddView(best, fit.camera_from_head);
+    const Vector6d off = MotionBetween(Guess(best, tied.front().view), fit.camera_from_head);
+    if (fit.inlier_weight < kGoodWeight || off.head<3>().norm() > kLandmarksDeny) continue;
+    AddView(best, fit.camera_from_head);
   }
 }
 
@@ -344,8 +350,10 @@ void Anchorer::RepairPoses(AnchoredClip& clip) const {
     std::size_t b = a + 1;
     while (b < count && joined(b) && !good(b)) ++b;
     std::vector<std::optional<PoseFit>> forward(count), backward(count);
-    if (joined(a) && good(a - 1)) forward = Chain(poses, a, b, 1);
-    if (b < count && joined(b) && good(b)) backward = Chain(poses, b - 1, a - 1, -1);
+    const bool good_before = joined(a) && good(a - 1);
+    const bool good_after = b < count && joined(b) && good(b);
+    if (good_before) forward = Chain(poses, a, b, 1);
+    if (good_after) backward = Chain(poses, b - 1, a - 1, -1);
     for (std::size_t f = a; f < b; ++f) {
       if (forward[f] && backward[f]) {
         // Each side drifts away from its own good frame.
@@ -358,6 +366,7 @@ void Anchorer::RepairPoses(AnchoredClip& clip) const {
         clip.poses[f] = forward[f] ? forward[f] : backward[f];
       }
     }
+    LimitDrift(in_.landmark_poses, a, b, good_before, good_after, kMostDrift, clip.poses);
     a = b;
   }
 }
