@@ -32,7 +32,10 @@ BakedShadow BakedShadow::Bake(const EmbreeScene& scene, const TriangleMesh& face
   const std::vector<Eigen::Vector3f> sphere = SphereDirections(options.directions);
   std::vector<std::vector<Blocked>> results(points.size());
   std::vector<std::uint8_t> buried(points.size(), 0);  // no way out past the frame
+  std::vector<bool> is_between(points.size(), false);
+  for (const FaceLattice::Between& b : baked.lattice_.between()) is_between[b.point] = true;
   tbb::parallel_for(std::size_t(0), points.size(), [&](std::size_t i) {
+    if (is_between[i]) return;
     const LatticePoint& at = points[i];
     const Eigen::Vector3f &position = at.position, &normal = at.normal;
     std::vector<Blocked>& blocked = results[i];
@@ -68,6 +71,9 @@ BakedShadow BakedShadow::Bake(const EmbreeScene& scene, const TriangleMesh& face
                               bool(buried[i]), std::uint32_t(i)});
   }
   baked.FindNeighbours();
+  for (const FaceLattice::Between& b : baked.lattice_.between()) {
+    is_touched[b.point] = is_touched[b.one] || is_touched[b.other];
+  }
   baked.lattice_.Touch(is_touched);
   return baked;
 }
@@ -201,6 +207,9 @@ std::vector<Eigen::Vector3f> BakedShadow::Relight(const HeadLight& light) const 
   });
   for (const Touched& point : touched_) {
     if (point.buried) ratios[point.point] = ratios[point.like];
+  }
+  for (const FaceLattice::Between& b : lattice_.between()) {
+    ratios[b.point] = (ratios[b.one] + ratios[b.other]) / 2;
   }
   return ratios;
 }

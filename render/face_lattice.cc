@@ -2,8 +2,11 @@
 #include "render/face_lattice.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <map>
 #include <unordered_set>
+#include <utility>
 
 namespace lorgnette {
 namespace {
@@ -11,15 +14,19 @@ namespace {
 constexpr double kNear_mm = 6;  // contact shadows are sharper than the far lattice up to here
 constexpr int kMaxCells = 24;   // along a triangle's side
 
-// Cubes of side kNear_mm that hold a vertex of the frame, or neighbour one that does.
+// Cubes that hold a vertex of the frame, or lie within kNear_mm of one that does.
 class NearFrame {
  public:
   explicit NearFrame(const TriangleMesh& frame) {
+    std::unordered_set<std::int64_t> seen;
     for (const Eigen::Vector3d& p : frame.positions) {
       const Eigen::Vector3i c = Cell(p);
-      for (int dz = -1; dz <= 1; ++dz) {
-        for (int dy = -1; dy <= 1; ++dy) {
-          for (int dx = -1; dx <= 1; ++dx) cells_.insert(Key(c + Eigen::Vector3i(dx, dy, dz)));
+      if (!seen.insert(Key(c)).second) continue;
+      for (int dz = -kReach; dz <= kReach; ++dz) {
+        for (int dy = -kReach; dy <= kReach; ++dy) {
+          for (int dx = -kReach; dx <= kReach; ++dx) {
+            cells_.insert(Key(c + Eigen::Vector3i(dx, dy, dz)));
+          }
         }
       }
     }
@@ -27,14 +34,54 @@ class NearFrame {
   bool Contains(const Eigen::Vector3d& p) const { return cells_.contains(Key(Cell(p))); }
 
  private:
+  static constexpr int kReach = 2;
   static Eigen::Vector3i Cell(const Eigen::Vector3d& p) {
-    return (p / kNear_mm).array().floor().cast<int>();
+    return (p / (kNear_mm / kReach)).array().floor().cast<int>();
   }
   static std::int64_t Key(const Eigen::Vector3i& c) {
     constexpr std::int64_t kBias = 1 << 20;
     return ((c.x() + kBias) << 42) | ((c.y() + kBias) << 21) | (c.z() + kBias);
   }
   std::unordered_set<std::int64_t> cells_;
+};
+
+// Of a point in a triangle's list: row by row, each row one shorter than the last.
+int IndexInLattice(int cells, int column, int row) {
+  return row * (cells + 1) - row * (row - 1) / 2 + column;
+}
+
+// Points on vertices and edges, which several triangles have.
+class SharedPoints {
+ public:
+  // The index of the point (i, j) of a triangle of so many cells: `next` where it is a new one.
+  std::uint32_t Index(const Eigen::Vector3i& triangle, int cells, int i, int j, std::uint32_t next,
+                      bool& is_new) {
+    // Corner (0, 0) is the triangle's first vertex, (cells, 0) its second, (0, cells) its third.
+    int from = 0, to = 0, step = 0;
+    if (i + j == cells) {
+      from = 1, to = 2, step = j;
+    } else if (j == 0) {
+      from = 0, to = 1, step = i;
+    } else if (i == 0) {
+      from = 0, to = 2, step = j;
+    } else {
+      return next;
+    }
+    if (step == cells) std::swap(from, to), step = 0;
+    Key key{triangle[from], triangle[to], cells, step};
+    if (step == 0) {
+      key = {triangle[from], triangle[from], 0, 0};
+    } else if (triangle[from] > triangle[to]) {
+      key = {triangle[to], triangle[from], cells, cells - step};
+    }
+    const auto [found, added] = points_.try_emplace(key, next);
+    is_new = added;
+    return found->second;
+  }
+
+ private:
+  using Key = std::array<int, 4>;  // vertices of the edge, cells, steps from the first
+  std::map<Key, std::uint32_t> points_;
 };
 
 LatticePoint PointOf(const TriangleMesh& face, std::uint32_t index, float u, float v) {
@@ -54,8 +101,8 @@ LatticePoint PointOf(const TriangleMesh& face, std::uint32_t index, float u, flo
 FaceLattice::FaceLattice(const TriangleMesh& face, const TriangleMesh& frame, double near_mm,
                          double far_mm) {
   const NearFrame near_frame(frame);
-  constexpr std::uint32_t kUnset = ~0u;
-  std::vector<std::uint32_t> vertex_point(face.positions.size(), kUnset);
+  SharedPoints shared;
+  std::vector<bool> is_between;
   for (std::size_t t = 0; t < face.triangles.size(); ++t) {
     const Eigen::Vector3i& triangle = face.triangles[t];
     const Eigen::Vector3d corners[3] = {face.positions[std::size_t(triangle[0])],
@@ -70,18 +117,29 @@ FaceLattice::FaceLattice(const TriangleMesh& face, const TriangleMesh& frame, do
     const double spacing = near ? near_mm : far_mm;
     const int cells = std::clamp(int(std::ceil(side / spacing)), 1, kMaxCells);
     lattices_.push_back({std::uint32_t(corners_.size()), std::uint16_t(cells), false});
-    for (int j = 0; j <= cells; ++j) {
-      for (int i = 0; i + j <= cells; ++i) {
-        const int corner = i == cells ? 1 : j == cells ? 2 : i + j == 0 ? 0 : -1;
-        std::uint32_t* shared = corner < 0 ? nullptr : &vertex_point[std::size_t(triangle[corner])];
-        if (shared != nullptr && *shared != kUnset) {
-          corners_.push_back(*shared);
-          continue;
+    corners_.resize(corners_.size() + std::size_t((cells + 1) * (cells + 2) / 2));
+    const auto corner = [&](int i, int j) -> std::uint32_t& {
+      return corners_[lattices_.back().first + std::size_t(IndexInLattice(cells, i, j))];
+    };
+    // First every second point each way, then those between them.
+    for (const bool odd : {false, true}) {
+      for (int j = 0; j <= cells; ++j) {
+        for (int i = 0; i + j <= cells; ++i) {
+          if (((i | j) % 2 != 0) != odd) continue;
+          bool is_new = true;
+          corner(i, j) = shared.Index(triangle, cells, i, j, std::uint32_t(points_.size()), is_new);
+          if (!is_new) continue;
+          const LatticePoint& point = points_.emplace_back(
+              PointOf(face, std::uint32_t(t), float(i) / float(cells), float(j) / float(cells)));
+          is_between.push_back(false);
+          if (!odd || !near || near_frame.Contains(point.position.cast<double>())) continue;
+          const int di = i % 2, dj = i % 2 != 0 ? -(j % 2) : 1;
+          if (i + di + j + dj > cells || i - di + j - dj > cells) continue;
+          const std::uint32_t one = corner(i + di, j + dj), other = corner(i - di, j - dj);
+          if (is_between[one] || is_between[other]) continue;
+          is_between.back() = true;
+          between_.push_back({corner(i, j), one, other});
         }
-        if (shared != nullptr) *shared = std::uint32_t(points_.size());
-        corners_.push_back(std::uint32_t(points_.size()));
-        points_.push_back(
-            PointOf(face, std::uint32_t(t), float(i) / float(cells), float(j) / float(cells)));
       }
     }
   }
@@ -109,8 +167,8 @@ Eigen::Vector3f FaceLattice::Interpolate(const std::vector<Eigen::Vector3f>& val
   Eigen::Vector3f sum = Eigen::Vector3f::Zero();
   float weight = 0;
   const auto add = [&](float w, int column, int row) {
-    const int index = row * (cells + 1) - row * (row - 1) / 2 + column;
-    const Eigen::Vector3f& value = values[corners_[lattice.first + std::size_t(index)]];
+    const auto index = std::size_t(IndexInLattice(cells, column, row));
+    const Eigen::Vector3f& value = values[corners_[lattice.first + index]];
     if (value.x() == kNoValue) return;
     sum += w * value;
     weight += w;

@@ -21,10 +21,17 @@ class FaceLattice {
  public:
   FaceLattice() = default;
   // face with normals; points at most near_mm apart within 6 mm of the frame, else far_mm. Points
-  // at the mesh's own vertices are shared by its triangles.
+  // at the mesh's own vertices are shared by its triangles, and those on its edges by triangles of
+  // as many points.
   FaceLattice(const TriangleMesh& face, const TriangleMesh& frame, double near_mm, double far_mm);
 
   const std::vector<LatticePoint>& points() const { return points_; }
+  // Points in the middle between two others, of a triangle that is near the frame in another part:
+  // there the mean of the two will do. The two are no such points.
+  struct Between {
+    std::uint32_t point, one, other;
+  };
+  const std::vector<Between>& between() const { return between_; }
   // Triangles with a marked point are touched; the values of the others are not asked for.
   void Touch(const std::vector<bool>& marked);
   bool touched(std::uint32_t triangle) const { return lattices_[triangle].touched; }
@@ -42,6 +49,7 @@ class FaceLattice {
     bool touched = false;
   };
   std::vector<LatticePoint> points_;
+  std::vector<Between> between_;
   std::vector<Lattice> lattices_;       // one a triangle
   std::vector<std::uint32_t> corners_;  // point indices, (cells + 1)(cells + 2) / 2 a triangle
 };
