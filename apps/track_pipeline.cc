@@ -91,8 +91,8 @@ Result<HeadTrack> TrackVideo(const TrackRequest& request) {
   LG_ASSIGN(Tracker tracker, Tracker::Create(options));
   Progress progress("tracking", "frames", request.frames.Count(reader.info().frame_count));
   long taken = 0;
-  while (const std::optional<VideoFrame> frame = decoding.Next()) {
-    LG_RETURN_IF_ERROR(tracker.Add(frame->rgb, frame->time_s));
+  while (std::optional<VideoFrame> frame = decoding.Next()) {
+    LG_RETURN_IF_ERROR(tracker.Add(std::move(frame->rgb), frame->time_s));
     progress.Update(++taken);
   }
   LG_RETURN_IF_ERROR(decoding.Finish());

@@ -52,7 +52,8 @@ class Anchorer {
   // All frames against their nearest views.
   void MatchFrames();
   double Bundle(double focal_log_sigma);
-  void FitPoses(AnchoredClip& clip) const;
+  // Of the frames with sightings.
+  std::vector<std::optional<PoseFit>> AllPoses() const;
   // Frames that look like none of the views (a grimace, a blur) are tied to their neighbours in
   // time, from both sides, and held near to what the landmarks say.
   void RepairPoses(AnchoredClip& clip) const;
@@ -216,13 +217,11 @@ double Anchorer::Bundle(double focal_log_sigma) {
   // Key frames: the views and frames evenly spread over the clip.
   std::vector<std::size_t> keys;
   for (const AnchorView& view : views_) keys.push_back(view.frame);
+  const std::vector<std::optional<PoseFit>> fits = AllPoses();
   std::vector<std::size_t> usable;
-  for (std::size_t f = 0; f < sightings_.size(); ++f) {
+  for (std::size_t f = 0; f < fits.size(); ++f) {
     const bool is_view = std::find(keys.begin(), keys.end(), f) != keys.end();
-    if (sightings_[f].empty() || is_view) continue;
-    if (Fit(sightings_[f], guesses_[f], CropPixel(f)).inlier_weight >= kGoodWeight) {
-      usable.push_back(f);
-    }
+    if (fits[f] && !is_view && fits[f]->inlier_weight >= kGoodWeight) usable.push_back(f);
   }
   const std::size_t stride = std::max<std::size_t>(1, usable.size() / kKeyFrames);
   for (std::size_t k = stride / 2; k < usable.size(); k += stride) keys.push_back(usable[k]);
@@ -238,8 +237,7 @@ double Anchorer::Bundle(double focal_log_sigma) {
   for (std::size_t k = 0; k < keys.size(); ++k) {
     const std::size_t f = keys[k];
     const bool is_view = k < views_.size();
-    poses.push_back(is_view ? views_[k].camera_from_head
-                            : Fit(sightings_[f], guesses_[f], CropPixel(f)).camera_from_head);
+    poses.push_back(is_view ? views_[k].camera_from_head : fits[f]->camera_from_head);
     if (is_view) {
       for (std::size_t a = 0; a < views_[k].anchors.size(); ++a) {
         const Eigen::Vector3d p = poses[k] * views_[k].anchors[a].head;
@@ -296,12 +294,12 @@ void Anchorer::KeepSize() {
   for (Eigen::Isometry3d& guess : guesses_) guess = size.Rebased(guess);
 }
 
-void Anchorer::FitPoses(AnchoredClip& clip) const {
-  clip.poses.assign(in_.frames.size(), std::nullopt);
-  for (std::size_t f = 0; f < in_.frames.size(); ++f) {
-    if (sightings_[f].empty()) continue;
-    clip.poses[f] = Fit(sightings_[f], guesses_[f], CropPixel(f));
-  }
+std::vector<std::optional<PoseFit>> Anchorer::AllPoses() const {
+  std::vector<std::optional<PoseFit>> poses(in_.frames.size());
+  tbb::parallel_for(std::size_t(0), poses.size(), [&](std::size_t f) {
+    if (!sightings_[f].empty()) poses[f] = Fit(sightings_[f], guesses_[f], CropPixel(f));
+  });
+  return poses;
 }
 
 // Follows frames first, first + step, ... up to last (left out) from the good frame before `first`.
@@ -379,7 +377,7 @@ AnchoredClip AnchorClip(const AnchoringInput& input, double focal_log_sigma, Cam
   anchorer.MatchFrames();
   AnchoredClip clip;
   clip.rms_px = anchorer.Bundle(focal_log_sigma);
-  anchorer.FitPoses(clip);
+  clip.poses = anchorer.AllPoses();
   anchorer.RepairPoses(clip);
   camera = anchorer.camera();
   clip.views = std::move(anchorer.views());

@@ -61,9 +61,9 @@ FaceCrop EyeCrop(const ImageRgb8& frame, const FaceLandmarks& face, const EyeLan
 
 FaceFollower::FaceFollower(FaceDetector detector, FaceLandmarker landmarker,
                            CanonicalMesh canonical)
-    : detector_(std::move(detector)),
-      landmarker_(std::move(landmarker)),
-      canonical_(std::move(canonical)) {}
+    : canonical_(std::move(canonical)),
+      detector_(std::move(detector)),
+      landmarker_(std::move(landmarker)) {}
 
 Result<FaceFollower> FaceFollower::Load(const std::string& model_dir,
                                         const CanonicalMesh& canonical) {
@@ -95,7 +95,7 @@ bool FaceFollower::IsCut(const ImageRgb8& frame) {
 
 FollowedFrame FaceFollower::Next(const ImageRgb8& frame, double time_s) {
   FollowedFrame out;
-  const std::size_t number = frame_++;
+  ++frame_;
   out.time_s = time_s;
   out.cut_before = IsCut(frame);
   if (out.cut_before) region_.reset();
@@ -118,17 +118,22 @@ FollowedFrame FaceFollower::Next(const ImageRgb8& frame, double time_s) {
                                  : landmarker_.FindCorrected(frame, *region_);
     if (found.face_probability < kMinFaceProbability || !Usable(found.Region())) continue;
     region_ = found.Region();
-    FaceRegion around = *region_;
-    around.side *= kCropSide;
-    out.crop = {{around, SampleGrey(frame, around, kCropPixels)}, crops_};
-    out.right_eye = {EyeCrop(frame, found, kRightEye, region_->angle), crops_};
-    out.left_eye = {EyeCrop(frame, found, kLeftEye, region_->angle), crops_};
-    portraits_.Offer(number, frame, found, canonical_);
     out.landmarks = std::move(found);
     return out;
   }
   region_.reset();
   return out;
+}
+
+void FaceFollower::KeepPictures(std::size_t number, const ImageRgb8& frame, FollowedFrame& found) {
+  if (!found.landmarks) return;
+  const FaceRegion region = found.landmarks->Region();
+  FaceRegion around = region;
+  around.side *= kCropSide;
+  found.crop = {{around, SampleGrey(frame, around, kCropPixels)}, crops_};
+  found.right_eye = {EyeCrop(frame, *found.landmarks, kRightEye, region.angle), crops_};
+  found.left_eye = {EyeCrop(frame, *found.landmarks, kLeftEye, region.angle), crops_};
+  portraits_.Offer(number, frame, *found.landmarks, canonical_);
 }
 
 void FaceFollower::LookAgain(std::vector<FollowedFrame>& frames) {

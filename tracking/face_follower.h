@@ -32,7 +32,11 @@ class FaceFollower {
   // model_dir: face_detection.onnx and face_landmark.onnx.
   static Result<FaceFollower> Load(const std::string& model_dir, const CanonicalMesh& canonical);
 
+  // The next frame, its pictures apart.
   FollowedFrame Next(const ImageRgb8& frame, double time_s);
+  // The pictures of frame `number`, for `found`, which Next() returned for it; frames in their
+  // order. May run beside the Next() of the frame after.
+  void KeepPictures(std::size_t number, const ImageRgb8& frame, FollowedFrame& found);
 
   // After the last frame: gives the most frontal of `frames`, all that Next() returned, their
   // steady landmarks.
@@ -41,11 +45,15 @@ class FaceFollower {
  private:
   FaceFollower(FaceDetector detector, FaceLandmarker landmarker, CanonicalMesh canonical);
   bool IsCut(const ImageRgb8& frame);
-  FaceDetector detector_;
-  FaceLandmarker landmarker_;
+
+  // Of KeepPictures() alone.
   CanonicalMesh canonical_;
   Portraits portraits_;
   std::shared_ptr<CropStore> crops_ = std::make_shared<CropStore>();
+
+  // Of Next() alone.
+  FaceDetector detector_;
+  FaceLandmarker landmarker_;
   std::size_t frame_ = 0;  // number of the next frame
   std::optional<FaceRegion> region_;
   int since_mirror_ = 0;              // frames since the network last saw the mirror image

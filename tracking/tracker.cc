@@ -4,6 +4,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <future>
 #include <opencv2/core.hpp>
 #include <utility>
 #include <vector>
@@ -20,6 +21,12 @@ struct Tracker::State {
   FaceFollower follower;
   int width = 0, height = 0;
   std::vector<FollowedFrame> frames;
+  std::future<void> pictures;  // of the last frame; declared last, since it uses the others
+
+  // Waits for the pictures of the last frame.
+  void Settle() {
+    if (pictures.valid()) pictures.get();
+  }
 };
 
 Tracker::Tracker(std::unique_ptr<State> state) : state_(std::move(state)) {}
@@ -35,11 +42,11 @@ Result<Tracker> Tracker::Create(const TrackerOptions& options) {
   }
   LG_ASSIGN(CanonicalMesh canonical, ReadCanonicalMesh(options.model_dir + "/canonical_face.obj"));
   LG_ASSIGN(FaceFollower follower, FaceFollower::Load(options.model_dir, canonical));
-  return Tracker(
-      std::make_unique<State>(State{options, std::move(canonical), std::move(follower), 0, 0, {}}));
+  return Tracker(std::make_unique<State>(
+      State{options, std::move(canonical), std::move(follower), 0, 0, {}, {}}));
 }
 
-Status Tracker::Add(const ImageRgb8& frame, double time_s) {
+Status Tracker::Add(ImageRgb8 frame, double time_s) {
   State& s = *state_;
   if (frame.empty()) return Failure("frame: got an empty image, want pixels");
   if (s.frames.empty()) {
@@ -54,7 +61,13 @@ Status Tracker::Add(const ImageRgb8& frame, double time_s) {
                                frame.width, frame.height, s.width, s.height));
   }
   try {
-    s.frames.push_back(s.follower.Next(frame, time_s));
+    FollowedFrame followed = s.follower.Next(frame, time_s);
+    s.Settle();
+    s.frames.push_back(std::move(followed));
+    s.pictures = std::async(std::launch::async,
+                            [&s, number = s.frames.size() - 1, picture = std::move(frame)] {
+                              s.follower.KeepPictures(number, picture, s.frames.back());
+                            });
   } catch (const cv::Exception& e) {
     return Failure(fmt::format("frame {}: the face network failed: {}", s.frames.size(), e.err));
   }
@@ -63,6 +76,12 @@ Status Tracker::Add(const ImageRgb8& frame, double time_s) {
 
 Result<HeadTrack> Tracker::Finish() {
   State& s = *state_;
+  try {
+    s.Settle();
+  } catch (const cv::Exception& e) {
+    return Failure(
+        fmt::format("frame {}: no pictures of the face: {}", s.frames.size() - 1, e.err));
+  }
   std::vector<const FaceLandmarks*> landmarks;
   for (const FollowedFrame& frame : s.frames) {
     landmarks.push_back(frame.landmarks ? &*frame.landmarks : nullptr);

@@ -31,8 +31,9 @@ class Tracker {
   Tracker(Tracker&&) noexcept;
   ~Tracker();
 
-  // Frames in order, all of one size.
-  Status Add(const ImageRgb8& frame, double time_s);
+  // Frames in order, all of one size. A second thread cuts its pictures out of a frame while the
+  // network looks at the next.
+  Status Add(ImageRgb8 frame, double time_s);
   // Fails with one sentence when no frame shows a face.
   Result<HeadTrack> Finish();
 
