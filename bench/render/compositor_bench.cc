@@ -10,6 +10,7 @@
 #include "base/units.h"
 #include "bench/calibration.h"
 #include "geometry/eyewear.h"
+#include "geometry/frame_io.h"
 #include "optics/certify.h"
 #include "optics/design.h"
 #include "render/color.h"
@@ -236,6 +237,29 @@ BENCHMARK(BM_Create)
     ->UseRealTime()
     ->MeasureProcessCPUTime()
     ->Complexity(benchmark::oN);
+
+// The same with a frame as it is worn: tens of thousands of triangles.
+void BM_CreateWorn(benchmark::State& state) {
+  Setup setup(720);
+  auto frame = LoadFrame("panto");
+  if (!frame) {
+    state.SkipWithError(frame.error().message.c_str());
+    return;
+  }
+  setup.eyewear.frame = *std::move(frame);
+  std::size_t triangles = 0;
+  for (const FramePart& part : setup.eyewear.frame.parts) triangles += part.mesh.triangles.size();
+  for (auto _ : state) {
+    benchmark::DoNotOptimize(Compositor::Create(setup.eyewear, setup.face, TriangleMesh{},
+                                                setup.environment, CompositorOptions{}));
+  }
+  state.counters["frame_triangles"] = double(triangles);
+}
+BENCHMARK(BM_CreateWorn)
+    ->Name("render/compositor/create_and_bake/panto")
+    ->Unit(benchmark::kMillisecond)
+    ->UseRealTime()
+    ->MeasureProcessCPUTime();
 
 }  // namespace
 }  // namespace lorgnette
