@@ -40,7 +40,9 @@ Result<av::Frame> Decode(const std::string& bytes, AVCodecID format) {
   const av::Codec codec(avcodec_alloc_context3(decoder));
   codec->thread_count = 1;
   codec->max_pixels = kMaxPixels;
-  codec->err_recognition |= AV_EF_EXPLODE;
+  // Of a TIFF, tags that the decoder does not know would count as errors too. One that is cut short
+  // is an error all the same.
+  if (format != AV_CODEC_ID_TIFF) codec->err_recognition |= AV_EF_EXPLODE;
   int error = avcodec_open2(codec.get(), decoder, nullptr);
   const av::Packet packet(av_packet_alloc());
   if (error >= 0) error = av_new_packet(packet.get(), int(bytes.size()));

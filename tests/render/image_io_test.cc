@@ -187,6 +187,51 @@ TEST(Picture, TurnsAJpegUprightAsExifSays) {
   EXPECT_LE(GreatestDifference(*held, upright), 6);
 }
 
+// Two pixels of RGB without compression, with a tag that few decoders know.
+std::string SmallTiff() {
+  std::string bytes = "II*";
+  const auto put = [&](std::uint32_t value, int size) {
+    for (int k = 0; k < size; ++k) bytes += char((value >> (8 * k)) & 0xff);
+  };
+  constexpr int kEntries = 11, kShort = 3, kLong = 4;
+  put(0, 1);
+  put(8, 4);  // of the directory
+  put(kEntries, 2);
+  const auto entry = [&](int tag, int type, int count, std::uint32_t value) {
+    put(std::uint32_t(tag), 2);
+    put(std::uint32_t(type), 2);
+    put(std::uint32_t(count), 4);
+    put(value, 4);
+  };
+  const std::uint32_t behind = 8 + 2 + 12 * kEntries + 4;
+  entry(256, kShort, 1, 2);          // width
+  entry(257, kShort, 1, 1);          // height
+  entry(258, kShort, 3, behind);     // bits a sample
+  entry(259, kShort, 1, 1);          // compression: none
+  entry(262, kShort, 1, 2);          // RGB
+  entry(273, kLong, 1, behind + 6);  // strip
+  entry(277, kShort, 1, 3);          // samples a pixel
+  entry(278, kShort, 1, 1);          // rows a strip
+  entry(279, kLong, 1, 6);           // bytes of the strip
+  entry(339, kShort, 1, 1);          // samples are whole numbers
+  entry(51000, kLong, 1, 7);         // somebody's own
+  put(0, 4);                         // no other directory
+  for (int k = 0; k < 3; ++k) put(8, 2);
+  for (const int value : {10, 20, 30, 200, 210, 220}) put(std::uint32_t(value), 1);
+  return bytes;
+}
+
+TEST(Picture, ReadsATiffWithForeignTags) {
+  const std::string path = Temporary("foreign.tif");
+  ASSERT_TRUE(WriteFileAtomically(path, SmallTiff()));
+  const auto picture = ReadPicture(path);
+  ASSERT_TRUE(picture) << picture.error().message;
+  EXPECT_EQ(picture->width, 2);
+  EXPECT_EQ(picture->data, (std::vector<std::uint8_t>{10, 20, 30, 200, 210, 220}));
+  ASSERT_TRUE(WriteFileAtomically(path, SmallTiff().substr(0, SmallTiff().size() - 4)));
+  EXPECT_FALSE(ReadPicture(path));
+}
+
 TEST(Picture, RefusesAFileThatIsCutShort) {
   for (const char* name : {"cut.png", "cut.jpg"}) {
     const std::string path = Temporary(name);
