@@ -168,8 +168,11 @@ Result<Scaler> ScalerToQuickRgb(int width, int height, AVPixelFormat format,
                     SWS_POINT);
 }
 
-bool HasQuickRgb(AVPixelFormat format, int height) {
-  return (format == AV_PIX_FMT_YUV420P || format == AV_PIX_FMT_YUV422P) && height % 2 == 0;
+bool HasQuickRgb(AVPixelFormat format, int width, int height) {
+  // Of another width, libswscale's vector code leaves the last columns out or writes past the end.
+  constexpr int kColumns = 16;
+  return width % kColumns == 0 && (format == AV_PIX_FMT_YUV420P || format == AV_PIX_FMT_YUV422P) &&
+         height % 2 == 0;
 }
 
 Result<Scaler> ScalerFromRgb(int width, int height, AVPixelFormat format, const ColourReading& c) {

@@ -68,7 +68,7 @@ Result<Scaler> ScalerToRgb(int width, int height, AVPixelFormat format, const Co
 // To packed RGB24 by libswscale's shortest way; see HasQuickRgb for what it is there for.
 Result<Scaler> ScalerToQuickRgb(int width, int height, AVPixelFormat format,
                                 const ColourReading& c);
-bool HasQuickRgb(AVPixelFormat format, int height);
+bool HasQuickRgb(AVPixelFormat format, int width, int height);
 Result<Scaler> ScalerFromRgb(int width, int height, AVPixelFormat format, const ColourReading& c);
 
 }  // namespace av

@@ -42,7 +42,8 @@ struct VideoReaderOptions {
   // Frames come with VideoFrame::original; whoever writes no video does without.
   bool keep_originals = true;
   // false: chroma is taken from the nearest sample, in a fifth of the time; for those who look for
-  // shapes in a picture that nobody will see. YUV 4:2:0 and 4:2:2 of 8 bits alone.
+  // shapes in a picture that nobody will see. Only for YUV 4:2:0 and 4:2:2 of 8 bits whose width
+  // is a multiple of 16.
   bool exact_colours = true;
 };
 

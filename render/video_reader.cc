@@ -140,7 +140,7 @@ Status VideoReader::State::SetScaler(const AVFrame& frame) {
   reading = av::ReadingOf(frame);
   bool full_range = false;
   const AVPixelFormat format = av::PlainFormat(frame.format, &full_range);
-  const bool quick = !options.exact_colours && av::HasQuickRgb(format, frame.height);
+  const bool quick = !options.exact_colours && av::HasQuickRgb(format, frame.width, frame.height);
   auto converter = quick ? av::ScalerToQuickRgb(frame.width, frame.height, format, reading)
                          : av::ScalerToPlanes(frame.width, frame.height, format, reading);
   if (!converter) return Failure(path + ": " + converter.error().message);

@@ -7,6 +7,7 @@ extern "C" {
 #include <libavutil/pixdesc.h>
 }
 
+#include <fmt/format.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -238,6 +239,22 @@ INSTANTIATE_TEST_SUITE_P(Tags, VideoColour,
                            return std::string(parameter.param.tag) +
                                   (parameter.param.full ? "Full" : "Limited");
                          });
+
+TEST_F(VideoTest, QuickReadingFillsPicturesOfAnyWidth) {
+  SKIP_WITHOUT_FFMPEG();
+  for (const int width : {24, 36, 40, 48, 50}) {
+    ASSERT_TRUE(Ffmpeg(fmt::format(
+        "-f lavfi -i color=c=0x60a070:s={}x16:d=0.1 -pix_fmt yuv420p -c:v ffv1 in.mkv", width)));
+    auto reader = VideoReader::Open(Path("in.mkv"), {.exact_colours = false});
+    ASSERT_TRUE(reader);
+    const auto frame = reader->Next();
+    ASSERT_TRUE(frame && *frame);
+    for (const std::uint8_t code : (*frame)->rgb.data) {
+      ASSERT_GE(code, 0x5c) << width;
+      ASSERT_LE(code, 0xa4) << width;
+    }
+  }
+}
 
 av::Frame MakeFrame(int width, int height, AVPixelFormat format, std::uint8_t value) {
   av::Frame frame = *av::NewFrame(width, height, format);
