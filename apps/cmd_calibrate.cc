@@ -53,8 +53,7 @@ struct Views {
 };
 
 Status AddViews(const std::string& path, const Chessboard& board, Views& views) {
-  LG_ASSIGN(VideoReader reader,
-            VideoReader::Open(path, {.keep_originals = false, .exact_colours = false}));
+  LG_ASSIGN(VideoReader reader, VideoReader::Open(path, {.keep_originals = false}));
   const VideoInfo& info = reader.info();
   if (views.width == 0) {
     views.width = info.width;

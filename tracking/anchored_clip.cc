@@ -29,7 +29,8 @@ constexpr double kFirstSigma = 0.3, kLeastSigma = 0.15;  // of a sighting, crop 
 constexpr double kAlikeFrames = 4;
 constexpr double kGoodWeight = 10;  // of the inliers of a pose that can be relied on
 // Between two frames of a clip the landmarks' poses err by a few degrees; texture that says more
-// was matched wrongly, or has drifted.
+// was matched wrongly, or has drifted. On turning_512 ties that held were off by 4.7 degrees at
+// most, one that misled by 8.6; fitted views differ from their landmarks by up to 3.7.
 constexpr double kLandmarksDeny = RadiansFromDegrees(6), kMostDrift = RadiansFromDegrees(3);
 
 struct Sighting {

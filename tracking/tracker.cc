@@ -24,8 +24,14 @@ struct Tracker::State {
   std::future<void> pictures;  // of the last frame; declared last, since it uses the others
 
   // Waits for the pictures of the last frame.
-  void Settle() {
-    if (pictures.valid()) pictures.get();
+  Status Settle() {
+    try {
+      if (pictures.valid()) pictures.get();
+    } catch (const cv::Exception& e) {
+      return Failure(
+          fmt::format("frame {}: no pictures of the face: {}", frames.size() - 1, e.err));
+    }
+    return {};
   }
 };
 
@@ -60,28 +66,24 @@ Status Tracker::Add(ImageRgb8 frame, double time_s) {
     return Failure(fmt::format("frame {}: got {}x{}, want {}x{} as the first", s.frames.size(),
                                frame.width, frame.height, s.width, s.height));
   }
+  FollowedFrame followed;
   try {
-    FollowedFrame followed = s.follower.Next(frame, time_s);
-    s.Settle();
-    s.frames.push_back(std::move(followed));
-    s.pictures = std::async(std::launch::async,
-                            [&s, number = s.frames.size() - 1, picture = std::move(frame)] {
-                              s.follower.KeepPictures(number, picture, s.frames.back());
-                            });
+    followed = s.follower.Next(frame, time_s);
   } catch (const cv::Exception& e) {
     return Failure(fmt::format("frame {}: the face network failed: {}", s.frames.size(), e.err));
   }
+  LG_RETURN_IF_ERROR(s.Settle());
+  s.frames.push_back(std::move(followed));
+  s.pictures = std::async(std::launch::async,
+                          [&s, number = s.frames.size() - 1, picture = std::move(frame)] {
+                            s.follower.KeepPictures(number, picture, s.frames.back());
+                          });
   return {};
 }
 
 Result<HeadTrack> Tracker::Finish() {
   State& s = *state_;
-  try {
-    s.Settle();
-  } catch (const cv::Exception& e) {
-    return Failure(
-        fmt::format("frame {}: no pictures of the face: {}", s.frames.size() - 1, e.err));
-  }
+  LG_RETURN_IF_ERROR(s.Settle());
   std::vector<const FaceLandmarks*> landmarks;
   for (const FollowedFrame& frame : s.frames) {
     landmarks.push_back(frame.landmarks ? &*frame.landmarks : nullptr);
