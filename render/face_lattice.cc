@@ -14,7 +14,7 @@ namespace {
 constexpr double kNear_mm = 6;  // contact shadows are sharper than the far lattice up to here
 constexpr int kMaxCells = 24;   // along a triangle's side
 
-// Cubes that hold a vertex of the frame, or lie within kNear_mm of one that does.
+// Cubes of side kNear_mm that hold a vertex of the frame, or neighbour one that does.
 class NearFrame {
  public:
   explicit NearFrame(const TriangleMesh& frame) {
@@ -22,11 +22,9 @@ class NearFrame {
     for (const Eigen::Vector3d& p : frame.positions) {
       const Eigen::Vector3i c = Cell(p);
       if (!seen.insert(Key(c)).second) continue;
-      for (int dz = -kReach; dz <= kReach; ++dz) {
-        for (int dy = -kReach; dy <= kReach; ++dy) {
-          for (int dx = -kReach; dx <= kReach; ++dx) {
-            cells_.insert(Key(c + Eigen::Vector3i(dx, dy, dz)));
-          }
+      for (int dz = -1; dz <= 1; ++dz) {
+        for (int dy = -1; dy <= 1; ++dy) {
+          for (int dx = -1; dx <= 1; ++dx) cells_.insert(Key(c + Eigen::Vector3i(dx, dy, dz)));
         }
       }
     }
@@ -34,9 +32,8 @@ class NearFrame {
   bool Contains(const Eigen::Vector3d& p) const { return cells_.contains(Key(Cell(p))); }
 
  private:
-  static constexpr int kReach = 2;
   static Eigen::Vector3i Cell(const Eigen::Vector3d& p) {
-    return (p / (kNear_mm / kReach)).array().floor().cast<int>();
+    return (p / kNear_mm).array().floor().cast<int>();
   }
   static std::int64_t Key(const Eigen::Vector3i& c) {
     constexpr std::int64_t kBias = 1 << 20;

@@ -139,9 +139,8 @@ Result<HeadScene> HeadScene::Build(const Eyewear& eyewear, const TriangleMesh& f
     rim_depth.push_back(RimDepth(lens, frame.mesh));
   }
 
-  VertexThinning lit_vertices(frame.mesh);
   std::vector<SurfacePoint> frame_points;
-  for (const std::uint32_t i : lit_vertices.kept()) {
+  for (std::size_t i = 0; i < frame.mesh.positions.size(); ++i) {
     frame_points.push_back(
         {frame.mesh.positions[i].cast<float>(), frame.mesh.normals[i].cast<float>()});
   }
@@ -182,7 +181,6 @@ Result<HeadScene> HeadScene::Build(const Eyewear& eyewear, const TriangleMesh& f
                    BrightestLight(environment),
                    SphereDirections(directions),
                    *std::move(cells),
-                   std::move(lit_vertices),
                    std::move(frame_light),
                    std::move(baked_shadow),
                    std::move(paper_shadow),

@@ -14,7 +14,6 @@
 #include "render/lens_solid.h"
 #include "render/lighting.h"
 #include "render/paper_shadow.h"
-#include "render/vertex_thinning.h"
 
 namespace lorgnette {
 
@@ -59,8 +58,7 @@ struct HeadScene {
   BrightestLight brightest;
   std::vector<Eigen::Vector3f> directions;  // of the baked light
   BlurredEnvironment cells;
-  VertexThinning lit_vertices;  // of the frame's mesh
-  BakedIrradiance frame_light;  // at lit_vertices.kept()
+  BakedIrradiance frame_light;
   std::optional<BakedShadow> baked_shadow;
   std::optional<PaperShadow> paper_shadow;
   std::optional<FaceLattice> gather_lattice;

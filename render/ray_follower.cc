@@ -85,8 +85,7 @@ RayFollower::RayFollower(const HeadScene& head, const PictureView& picture, cons
       LightAt(head.directions, head.cells, world_from_head_, float(head.options.environment_scale));
   if (head.baked_shadow && effects.rest[Effect::kShadow])
     ratios_ = head.baked_shadow->Relight(light);
-  frame_irradiance_ =
-      head.lit_vertices.Expanded(head.frame_light.Relight(light, picture_.face_mean()));
+  frame_irradiance_ = head.frame_light.Relight(light, picture_.face_mean());
   lenses_overlap_ = LensesOverlap(head, camera, camera_from_head);
   if (head.gather_lattice && effects.rest[Effect::kShadow]) {
     GatherScene gather{head.scene, head.face, head.directions, light, picture_.vertex_colours(),
