@@ -74,7 +74,7 @@ class TempleLine {
 }  // namespace
 
 TriangleMesh BridgeMesh(const RimShape& rim, const RimParameters& rim_parameters,
-                        const BridgeParameters& bridge) {
+                        const BridgeParameters& bridge, const MeshFineness& fineness) {
   const double s_top = rim.ParameterAtAngle(bridge.attach_top_deg);
   double s_bottom = rim.ParameterAtAngle(bridge.attach_bottom_deg);
   if (s_bottom < s_top) s_bottom += 1;
@@ -93,10 +93,12 @@ TriangleMesh BridgeMesh(const RimShape& rim, const RimParameters& rim_parameters
   shape.rings = 48;
   shape.dome_rings = 8;
   shape.dome_start = shape.dome_end = 0.03;
+  shape.fineness = fineness;
   return SweepBar(map, shape);
 }
 
-Pad PadMesh(const RimShape& rim, const RimParameters& rim_parameters, const PadParameters& pad) {
+Pad PadMesh(const RimShape& rim, const RimParameters& rim_parameters, const PadParameters& pad,
+            const MeshFineness& fineness) {
   // The face looks to the nose: inward, downward and backward.
   const double frontal = RadiansFromDegrees(pad.frontal_deg);
   const double splay = RadiansFromDegrees(pad.splay_deg);
@@ -153,13 +155,15 @@ Pad PadMesh(const RimShape& rim, const RimParameters& rim_parameters, const PadP
     wire.rings = 28;
     wire.dome_rings = 4;
     wire.dome_start = wire.dome_end = 0.04;
+    wire.fineness = fineness;
     result.arm = SweepBar(arm, wire);
   }
   return result;
 }
 
 EndPiece EndPieceMesh(const RimShape& rim, const RimParameters& rim_parameters,
-                      const EndPieceParameters& end, double temple_thickness_mm) {
+                      const EndPieceParameters& end, double temple_thickness_mm,
+                      const MeshFineness& fineness) {
   const double s = rim.ParameterAtAngle(end.angle_deg);
   const Eigen::Vector3d start = rim.Point(s, 0.45 * rim.Width(s), 0);
   const double x = rim.OuterReach() + end.reach_mm - end.thickness_mm / 2;
@@ -181,6 +185,7 @@ EndPiece EndPieceMesh(const RimShape& rim, const RimParameters& rim_parameters,
   shape.rings = 36;
   shape.dome_rings = 4;
   shape.dome_start = shape.dome_end = 0.05;
+  shape.fineness = fineness;
   result.mesh = SweepBar(map, shape);
 
   const double barrel = std::min(1.1, 0.35 * end.height_mm);
@@ -195,12 +200,13 @@ EndPiece EndPieceMesh(const RimShape& rim, const RimParameters& rim_parameters,
   round.rings = 6;
   round.dome_rings = 3;
   round.dome_start = round.dome_end = 0.06;
+  round.fineness = fineness;
   result.barrel = SweepBar(cylinder, round);
   return result;
 }
 
 Temple TempleMesh(const TempleParameters& temple, const Eigen::Vector3d& hinge,
-                  double pantoscopic_tilt_deg) {
+                  double pantoscopic_tilt_deg, const MeshFineness& fineness) {
   const TempleLine line(temple, pantoscopic_tilt_deg);
   const double ear_x = temple.spread_mm / 2 + temple.thickness_mm / 2;
   const auto lateral = [&](double l) {
@@ -235,6 +241,7 @@ Temple TempleMesh(const TempleParameters& temple, const Eigen::Vector3d& hinge,
     shape.dome_rings = 6;
     shape.dome_start = first_dome_mm / (to - from);
     shape.dome_end = last_dome_mm / (to - from);
+    shape.fineness = fineness;
     return SweepBar(map, shape);
   };
   Temple result;

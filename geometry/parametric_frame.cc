@@ -43,24 +43,25 @@ FrameModel BuildFrame(const FrameParameters& parameters, const FrameTessellation
   if (parameters.mount != FrameMount::kRimless) {
     parts.AddPair("rim", FramePartKind::kFront,
                   parameters.mount == FrameMount::kFullRim
-                      ? rim.Mesh(fineness.rim_rings)
-                      : rim.UpperMesh(kHalfRimFrom_deg, kHalfRimTo_deg, fineness.rim_rings / 2),
+                      ? rim.Mesh(fineness.mesh)
+                      : rim.UpperMesh(kHalfRimFrom_deg, kHalfRimTo_deg, fineness.mesh),
                   parameters.rim.material);
   }
   for (std::size_t i = 0; i < parameters.bridges.size(); ++i) {
     parts.Add(i == 0 ? "bridge" : "upper bridge", FramePartKind::kFront,
-              BridgeMesh(rim, parameters.rim, parameters.bridges[i]),
+              BridgeMesh(rim, parameters.rim, parameters.bridges[i], fineness.mesh),
               parameters.bridges[i].material);
   }
-  const Pad pad = PadMesh(rim, parameters.rim, parameters.pads);
+  const Pad pad = PadMesh(rim, parameters.rim, parameters.pads, fineness.mesh);
   parts.AddPair("pad", FramePartKind::kNosePad, pad.pad, parameters.pads.material);
   parts.AddPair("pad arm", FramePartKind::kOther, pad.arm, parameters.pads.arm_material);
-  const EndPiece end =
-      EndPieceMesh(rim, parameters.rim, parameters.end_piece, parameters.temples.thickness_mm);
+  const EndPiece end = EndPieceMesh(rim, parameters.rim, parameters.end_piece,
+                                    parameters.temples.thickness_mm, fineness.mesh);
   parts.AddPair("end piece", FramePartKind::kFront, end.mesh, parameters.end_piece.material);
   parts.AddPair("hinge", FramePartKind::kHinge, end.barrel,
                 parameters.materials.count("hinge") != 0 ? "hinge" : parameters.end_piece.material);
-  const Temple temple = TempleMesh(parameters.temples, end.hinge, parameters.pantoscopic_tilt_deg);
+  const Temple temple =
+      TempleMesh(parameters.temples, end.hinge, parameters.pantoscopic_tilt_deg, fineness.mesh);
   parts.AddPair("temple", FramePartKind::kTemple, temple.bar, parameters.temples.material);
   parts.AddPair("temple tip", FramePartKind::kTemple, temple.sleeve,
                 parameters.temples.tip_material);

@@ -4,12 +4,13 @@
 
 #include "geometry/frame_model.h"
 #include "geometry/frame_parameters.h"
+#include "geometry/ring_grid.h"
 
 namespace lorgnette {
 
 // Fineness of the meshes and of the stored contour.
 struct FrameTessellation {
-  int rim_rings = 288;
+  MeshFineness mesh;
   int contour_points = 720;
 };
 

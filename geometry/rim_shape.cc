@@ -12,6 +12,7 @@ namespace {
 constexpr double kToolingPower = 530;  // D * mm: 1000 (1.530 - 1)
 constexpr int kAnglesSearched = 2048;
 constexpr double kLipRounding_mm = 0.12;
+constexpr int kRings = 288;  // before those that a mesh does not need are left out
 
 double Sag(double curvature, double squared_radius) {
   return curvature * squared_radius /
@@ -107,10 +108,10 @@ Section RimShape::SectionAt(double s) const {
                          {-lip, -depth}},
                         {round, round, inner, std::min(kLipRounding_mm, 0.3 * lip), 0,
                          std::min(kLipRounding_mm, 0.3 * lip), inner},
-                        6);
+                        13);
 }
 
-TriangleMesh RimShape::Mesh(int rings) const {
+TriangleMesh RimShape::Mesh(const MeshFineness& fineness) const {
   const RingFunction ring = [this](double s) {
     const Section section = SectionAt(s);
     const Eigen::Vector2d p = outline_.Point(s), n = outline_.OutwardNormal(s);
@@ -129,10 +130,11 @@ TriangleMesh RimShape::Mesh(int rings) const {
     }
     return points;
   };
-  return SweepClosed(ring, outline_.ArcLengthParameters(rings));
+  return SweepClosed(ring, outline_.ArcLengthParameters(kRings), fineness);
 }
 
-TriangleMesh RimShape::UpperMesh(double from_deg, double to_deg, int rings) const {
+TriangleMesh RimShape::UpperMesh(double from_deg, double to_deg,
+                                 const MeshFineness& fineness) const {
   const double from = ParameterAtAngle(from_deg + 360) - 1, to = ParameterAtAngle(to_deg);
   const VolumeMap map = [&](double v, double q, double w) -> Eigen::Vector3d {
     const double s = from + v * (to - from);
@@ -140,8 +142,9 @@ TriangleMesh RimShape::UpperMesh(double from_deg, double to_deg, int rings) cons
   };
   BarShape shape;
   shape.section = Superellipse(32, 4.0);
-  shape.rings = rings;
+  shape.rings = kRings / 2;
   shape.dome_rings = 8;
+  shape.fineness = fineness;
   return SweepBar(map, shape);
 }
 

@@ -26,10 +26,10 @@ class RimShape {
   double ParameterAtAngle(double angle_deg) const;            // of the outline's point
   double OuterReach() const;                                  // greatest x of the rim, frame
   LensOpening Opening(int points) const;                      // the true contour and aperture
-  TriangleMesh Mesh(int rings) const;
+  TriangleMesh Mesh(const MeshFineness& fineness) const;
   // Of a half rim: a bar over the lens' edge from the temple over the top to the nose, between the
   // outline's points at the two angles (from below 0, to above 180), without groove.
-  TriangleMesh UpperMesh(double from_deg, double to_deg, int rings) const;
+  TriangleMesh UpperMesh(double from_deg, double to_deg, const MeshFineness& fineness) const;
   const Eigen::Isometry3d& frame_from_opening() const { return frame_from_opening_; }
 
  private:

@@ -21,28 +21,14 @@ Eigen::Vector3d RingNormal(const Eigen::Vector3d& tangent, const Eigen::Vector3d
   return length > 0 ? Eigen::Vector3d(n / length) : Eigen::Vector3d(0, 0, 1);
 }
 
-void AppendRing(TriangleMesh& mesh, const RingFunction& ring, double s) {
+void AppendRing(RingGrid& grid, const RingFunction& ring, double s) {
   const Ring here = ring(s), before = ring(s - kStep), after = ring(s + kStep);
+  std::vector<Eigen::Vector3d> points, normals;
   for (std::size_t i = 0; i < here.size(); ++i) {
-    mesh.positions.push_back(here[i].position);
-    mesh.normals.push_back(RingNormal(here[i].tangent, after[i].position - before[i].position));
+    points.push_back(here[i].position);
+    normals.push_back(RingNormal(here[i].tangent, after[i].position - before[i].position));
   }
-}
-
-// Two triangles a quad, the diagonal along its shorter one.
-void JoinRings(TriangleMesh& mesh, int first, int second, int n) {
-  for (int i = 0; i < n; ++i) {
-    const int j = (i + 1) % n;
-    const int a = first + i, b = first + j, c = second + j, d = second + i;
-    const auto at = [&](int k) { return mesh.positions[std::size_t(k)]; };
-    if ((at(a) - at(c)).squaredNorm() <= (at(b) - at(d)).squaredNorm()) {
-      mesh.triangles.emplace_back(a, b, c);
-      mesh.triangles.emplace_back(a, c, d);
-    } else {
-      mesh.triangles.emplace_back(a, b, d);
-      mesh.triangles.emplace_back(b, c, d);
-    }
-  }
+  grid.AddRing(points, normals);
 }
 
 void OrientOutward(TriangleMesh& mesh) {
@@ -108,12 +94,11 @@ Section RoundedPolygon(const std::vector<Eigen::Vector2d>& corners,
   return section;
 }
 
-TriangleMesh SweepClosed(const RingFunction& ring, const std::vector<double>& parameters) {
-  TriangleMesh mesh;
-  for (const double s : parameters) AppendRing(mesh, ring, s);
-  const int rings = int(parameters.size());
-  const int n = int(mesh.positions.size()) / rings;
-  for (int k = 0; k < rings; ++k) JoinRings(mesh, k * n, ((k + 1) % rings) * n, n);
+TriangleMesh SweepClosed(const RingFunction& ring, const std::vector<double>& parameters,
+                         const MeshFineness& fineness) {
+  RingGrid grid(ring(parameters.front()).size());
+  for (const double s : parameters) AppendRing(grid, ring, s);
+  TriangleMesh mesh = grid.Thinned(fineness, /*closed=*/true).Mesh(/*closed=*/true);
   OrientOutward(mesh);
   return mesh;
 }
@@ -150,10 +135,11 @@ TriangleMesh SweepBar(const VolumeMap& volume_map, const BarShape& shape) {
   for (int k = 1; k < shape.rings; ++k) parameters.push_back(1 + double(k) / shape.rings);
   for (int k = 0; k < shape.dome_rings; ++k) parameters.push_back(2 + double(k) / shape.dome_rings);
 
-  TriangleMesh mesh;
-  for (const double s : parameters) AppendRing(mesh, ring, s);
-  const int rings = int(parameters.size());
-  for (int k = 0; k + 1 < rings; ++k) JoinRings(mesh, k * n, (k + 1) * n, n);
+  RingGrid fine(shape.section.points.size());
+  for (const double s : parameters) AppendRing(fine, ring, s);
+  const RingGrid grid = shape.fineness ? fine.Thinned(*shape.fineness, /*closed=*/false) : fine;
+  TriangleMesh mesh = grid.Mesh(/*closed=*/false);
+  const int rings = int(grid.rings()), around = int(grid.points_a_ring());
   for (const bool end : {false, true}) {
     const int pole = int(mesh.positions.size());
     const double v = end ? 1 : 0;
@@ -161,9 +147,9 @@ TriangleMesh SweepBar(const VolumeMap& volume_map, const BarShape& shape) {
     const Eigen::Vector3d along_w = volume_map(v, 0, kStep) - volume_map(v, 0, -kStep);
     mesh.positions.push_back(volume_map(v, 0, 0));
     mesh.normals.push_back((end ? 1 : -1) * along_q.cross(along_w).normalized());
-    const int base = end ? (rings - 1) * n : 0;
-    for (int i = 0; i < n; ++i) {
-      const int j = (i + 1) % n;
+    const int base = end ? (rings - 1) * around : 0;
+    for (int i = 0; i < around; ++i) {
+      const int j = (i + 1) % around;
       if (end) {
         mesh.triangles.emplace_back(base + i, base + j, pole);
       } else {

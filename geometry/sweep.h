@@ -5,9 +5,11 @@
 
 #include <Eigen/Core>
 #include <functional>
+#include <optional>
 #include <vector>
 
 #include "base/mesh.h"
+#include "geometry/ring_grid.h"
 
 namespace lorgnette {
 
@@ -31,9 +33,11 @@ struct RingPoint {
 using Ring = std::vector<RingPoint>;
 using RingFunction = std::function<Ring(double s)>;  // same number of points for every s
 
-// Ring by ring around a closed path; `parameters` ascending in [0, 1), the path has period 1.
+// Ring by ring around a closed path, as many of them as the fineness asks for; `parameters`
+// ascending in [0, 1), the path has period 1.
 // Orientation is fixed so that the volume is positive.
-TriangleMesh SweepClosed(const RingFunction& ring, const std::vector<double>& parameters);
+TriangleMesh SweepClosed(const RingFunction& ring, const std::vector<double>& parameters,
+                         const MeshFineness& fineness);
 
 // A bar: volume_map takes v in [0, 1] along it and (q, w) in its cross-section to space; the
 // section shrinks to a point at both ends along elliptic domes that take the fraction dome_start,
@@ -44,6 +48,7 @@ struct BarShape {
   int rings = 32;      // along the body
   int dome_rings = 5;  // in each end
   double dome_start = 0.02, dome_end = 0.02;
+  std::optional<MeshFineness> fineness;  // leaves out what it allows; absent: nothing
 };
 TriangleMesh SweepBar(const VolumeMap& volume_map, const BarShape& shape);
 
