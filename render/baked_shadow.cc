@@ -30,52 +30,81 @@ BakedShadow BakedShadow::Bake(const EmbreeScene& scene, const TriangleMesh& face
   baked.BakeOpenLight(scene, face, options);
 
   const std::vector<Eigen::Vector3f> sphere = SphereDirections(options.directions);
-  std::vector<std::vector<Blocked>> results(points.size());
-  std::vector<std::uint8_t> buried(points.size(), 0);  // no way out past the frame
+  std::vector<Lists> lists(points.size());
   std::vector<bool> is_between(points.size(), false);
   for (const FaceLattice::Between& b : baked.lattice_.between()) is_between[b.point] = true;
   tbb::parallel_for(std::size_t(0), points.size(), [&](std::size_t i) {
-    if (is_between[i]) return;
-    const LatticePoint& at = points[i];
-    const Eigen::Vector3f &position = at.position, &normal = at.normal;
-    std::vector<Blocked>& blocked = results[i];
-    std::size_t above = 0;
-    ForHemispherePackets(sphere, position + kFrameLift_mm * normal, normal,
-                         [&](std::size_t first, RayPacket& packet, const float* cosine) {
-                           scene.Occluded16(RaySet::kFrame, packet);
-                           for (std::size_t k = 0; k < RayPacket::kSize; ++k) {
-                             if (!packet.valid[k]) continue;
-                             ++above;
-                             if (packet.far[k] >= 0) continue;
-                             blocked.push_back({std::uint16_t(first + k), false, cosine[k]});
-                           }
-                         });
-    buried[i] = blocked.size() == above;
-    if (options.sees_face) {
-      MarkWhatTheFaceHides(scene, sphere, position + kFaceLift_mm * normal, blocked);
-    }
+    if (!is_between[i]) lists[i] = ListBlocked(scene, sphere, points[i], options.sees_face);
   });
 
   std::vector<bool> is_touched(points.size(), false);
+  std::uint32_t end = 0;
   for (std::size_t i = 0; i < points.size(); ++i) {
-    if (results[i].empty()) continue;
+    if (lists[i].blocked.empty()) continue;
     is_touched[i] = true;
-    const auto hidden = std::stable_partition(results[i].begin(), results[i].end(),
-                                              [](const Blocked& b) { return !b.hidden; });
-    const std::size_t first = baked.blocked_.size();
-    baked.blocked_.insert(baked.blocked_.end(), results[i].begin(), results[i].end());
-    baked.touched_.push_back({std::uint32_t(i), std::uint32_t(first),
-                              std::uint32_t(first + std::size_t(hidden - results[i].begin())),
-                              std::uint32_t(baked.blocked_.size()),
+    const std::uint32_t first = end;
+    end += std::uint32_t(lists[i].blocked.size());
+    baked.touched_.push_back({std::uint32_t(i), first, first + lists[i].seen, end,
                               face.triangles[points[i].triangle], points[i].u, points[i].v,
-                              bool(buried[i]), std::uint32_t(i)});
+                              lists[i].buried, std::uint32_t(i)});
   }
+  baked.blocked_.resize(end);
+  tbb::parallel_for(std::size_t(0), baked.touched_.size(), [&](std::size_t k) {
+    const Touched& point = baked.touched_[k];
+    std::ranges::copy(lists[point.point].blocked, baked.blocked_.begin() + point.first_blocked);
+  });
   baked.FindNeighbours();
   for (const FaceLattice::Between& b : baked.lattice_.between()) {
     is_touched[b.point] = is_touched[b.one] || is_touched[b.other];
   }
   baked.lattice_.Touch(is_touched);
   return baked;
+}
+
+BakedShadow::Lists BakedShadow::ListBlocked(const EmbreeScene& scene,
+                                            const std::vector<Eigen::Vector3f>& sphere,
+                                            const LatticePoint& at, bool sees_face) {
+  thread_local std::vector<Blocked> blocked, hidden;
+  blocked.clear();
+  hidden.clear();
+  std::size_t above = 0;
+  ForHemispherePackets(sphere, at.position + kFrameLift_mm * at.normal, at.normal,
+                       [&](std::size_t first, RayPacket& packet, const float* cosine) {
+                         scene.Occluded16(RaySet::kFrame, packet);
+                         for (std::size_t k = 0; k < RayPacket::kSize; ++k) {
+                           if (!packet.valid[k]) continue;
+                           ++above;
+                           if (packet.far[k] >= 0) continue;
+                           blocked.push_back({std::uint16_t(first + k),
+                                              std::uint16_t(kCosineUnits * cosine[k] + 0.5f)});
+                         }
+                       });
+  Lists lists;
+  lists.buried = blocked.size() == above;
+  if (sees_face) {
+    // Those that the face hides go behind the others.
+    const Eigen::Vector3f origin = at.position + kFaceLift_mm * at.normal;
+    std::size_t kept = 0;
+    for (std::size_t first = 0; first < blocked.size(); first += RayPacket::kSize) {
+      RayPacket packet = PacketToward(sphere, origin, blocked, first);
+      scene.Occluded16(RaySet::kHead, packet);
+      for (std::size_t k = 0; k < RayPacket::kSize; ++k) {
+        if (!packet.valid[k]) continue;
+        const Blocked b = blocked[first + k];
+        if (packet.far[k] < 0) {
+          hidden.push_back(b);
+        } else {
+          blocked[kept++] = b;
+        }
+      }
+    }
+    blocked.resize(kept);
+  }
+  lists.seen = std::uint32_t(blocked.size());
+  lists.blocked.reserve(blocked.size() + hidden.size());
+  lists.blocked.assign(blocked.begin(), blocked.end());
+  lists.blocked.insert(lists.blocked.end(), hidden.begin(), hidden.end());
+  return lists;
 }
 
 void BakedShadow::FindNeighbours() {
@@ -94,30 +123,24 @@ void BakedShadow::FindNeighbours() {
   }
 }
 
-void BakedShadow::MarkWhatTheFaceHides(const EmbreeScene& scene,
-                                       const std::vector<Eigen::Vector3f>& sphere,
-                                       const Eigen::Vector3f& origin,
-                                       std::vector<Blocked>& blocked) {
-  for (std::size_t first = 0; first < blocked.size(); first += RayPacket::kSize) {
-    RayPacket packet;
-    for (std::size_t k = 0; k < RayPacket::kSize; ++k) {
-      const bool valid = first + k < blocked.size();
-      const Eigen::Vector3f& d = sphere[blocked[valid ? first + k : first].direction];
-      packet.valid[k] = valid;
-      packet.ox[k] = origin.x();
-      packet.oy[k] = origin.y();
-      packet.oz[k] = origin.z();
-      packet.near[k] = 0;
-      packet.dx[k] = d.x();
-      packet.dy[k] = d.y();
-      packet.dz[k] = d.z();
-      packet.far[k] = std::numeric_limits<float>::infinity();
-    }
-    scene.Occluded16(RaySet::kHead, packet);
-    for (std::size_t k = 0; k < RayPacket::kSize; ++k) {
-      if (packet.valid[k]) blocked[first + k].hidden = packet.far[k] < 0;
-    }
+RayPacket BakedShadow::PacketToward(const std::vector<Eigen::Vector3f>& sphere,
+                                    const Eigen::Vector3f& origin,
+                                    const std::vector<Blocked>& blocked, std::size_t first) {
+  RayPacket packet;
+  for (std::size_t k = 0; k < RayPacket::kSize; ++k) {
+    const bool valid = first + k < blocked.size();
+    const Eigen::Vector3f& d = sphere[blocked[valid ? first + k : first].direction];
+    packet.valid[k] = valid;
+    packet.ox[k] = origin.x();
+    packet.oy[k] = origin.y();
+    packet.oz[k] = origin.z();
+    packet.near[k] = 0;
+    packet.dx[k] = d.x();
+    packet.dy[k] = d.y();
+    packet.dz[k] = d.z();
+    packet.far[k] = std::numeric_limits<float>::infinity();
   }
+  return packet;
 }
 
 void BakedShadow::BakeOpenLight(const EmbreeScene& scene, const TriangleMesh& face,
@@ -178,11 +201,11 @@ std::vector<Eigen::Vector3f> BakedShadow::Relight(const HeadLight& light) const 
     Eigen::Vector4f even = Eigen::Vector4f::Zero(), odd = Eigen::Vector4f::Zero();
     std::uint32_t k = first;
     for (; k + 1 < end; k += 2) {
-      even += blocked_[k].cosine * cells[blocked_[k].direction];
-      odd += blocked_[k + 1].cosine * cells[blocked_[k + 1].direction];
+      even += float(blocked_[k].cosine) * cells[blocked_[k].direction];
+      odd += float(blocked_[k + 1].cosine) * cells[blocked_[k + 1].direction];
     }
-    if (k < end) even += blocked_[k].cosine * cells[blocked_[k].direction];
-    return (even + odd).head<3>();
+    if (k < end) even += float(blocked_[k].cosine) * cells[blocked_[k].direction];
+    return (even + odd).head<3>() / kCosineUnits;
   };
   std::vector<Eigen::Vector3f> ratios(lattice_.points().size(), Eigen::Vector3f::Ones());
   tbb::parallel_for(std::size_t(0), touched_.size(), [&](std::size_t i) {

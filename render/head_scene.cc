@@ -139,12 +139,7 @@ Result<HeadScene> HeadScene::Build(const Eyewear& eyewear, const TriangleMesh& f
     rim_depth.push_back(RimDepth(lens, frame.mesh));
   }
 
-  std::vector<SurfacePoint> frame_points;
-  for (std::size_t i = 0; i < frame.mesh.positions.size(); ++i) {
-    frame_points.push_back(
-        {frame.mesh.positions[i].cast<float>(), frame.mesh.normals[i].cast<float>()});
-  }
-  BakedIrradiance frame_light = BakedIrradiance::Bake(scene, frame_points, kFrameDirections);
+  BakedIrradiance frame_light = BakedIrradiance::Bake(scene, frame.mesh, kFrameDirections);
 
   std::optional<BakedShadow> baked_shadow;
   std::optional<PaperShadow> paper_shadow;

@@ -7,6 +7,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <map>
 
 #include "base/units.h"
 #include "render/visibility.h"
@@ -36,22 +37,25 @@ HeadLight LightAt(const std::vector<Eigen::Vector3f>& directions, const BlurredE
   return light;
 }
 
-BakedIrradiance BakedIrradiance::Bake(const EmbreeScene& scene,
-                                      const std::vector<SurfacePoint>& points, int directions) {
+BakedIrradiance BakedIrradiance::Bake(const EmbreeScene& scene, const TriangleMesh& frame,
+                                      int directions) {
   BakedIrradiance baked;
-  baked.transfer_.resize(points.size());
-  baked.head_share_.resize(points.size());
+  const std::size_t count = frame.positions.size();
+  baked.transfer_.resize(count);
+  baked.head_share_.resize(count);
+  std::vector<std::uint8_t> buried(count, 0);
   const std::vector<Eigen::Vector3f> sphere = SphereDirections(directions);
   std::vector<Harmonics> harmonics;
   for (const Eigen::Vector3f& d : sphere) harmonics.push_back(EvaluateHarmonics(d));
   const float solid_angle = float(4 * kPi) / float(directions);
-  tbb::parallel_for(std::size_t(0), points.size(), [&](std::size_t i) {
-    const SurfacePoint& p = points[i];
-    const Eigen::Vector3f origin = p.position + kOffSkin_mm * p.normal;
+  tbb::parallel_for(std::size_t(0), count, [&](std::size_t i) {
+    const Eigen::Vector3f normal = frame.normals[i].cast<float>();
+    const Eigen::Vector3f origin = frame.positions[i].cast<float>() + kOffSkin_mm * normal;
     Harmonics& transfer = baked.transfer_[i];
     transfer.fill(0);
     float head = 0, total = 0;
-    ForHemispherePackets(sphere, origin, p.normal,
+    bool any = false;  // way out past the frame
+    ForHemispherePackets(sphere, origin, normal,
                          [&](std::size_t first, RayPacket& packet, const float* cosine) {
                            RayPacket by_head = packet;
                            scene.Occluded16(RaySet::kFrame, packet);
@@ -63,6 +67,7 @@ BakedIrradiance BakedIrradiance::Bake(const EmbreeScene& scene,
                              if (!packet.valid[k]) continue;
                              total += cosine[k];
                              if (packet.far[k] < 0) continue;
+                             any = true;
                              if (by_head.far[k] < 0) {
                                head += cosine[k];
                                continue;
@@ -75,8 +80,37 @@ BakedIrradiance BakedIrradiance::Bake(const EmbreeScene& scene,
                          });
     // Harmonics of the light already hold one solid angle; orthonormality takes the other.
     baked.head_share_[i] = total > 0 ? head / total : 0;
+    buried[i] = !any;
   });
+  baked.LightBuried(frame.triangles, {buried.begin(), buried.end()});
   return baked;
+}
+
+void BakedIrradiance::LightBuried(const std::vector<Eigen::Vector3i>& triangles,
+                                  std::vector<bool> buried) {
+  // From outside inward, ring by ring of neighbours.
+  for (bool found = true; found;) {
+    std::map<int, int> neighbours;  // of the buried vertices that are lit in this round
+    for (const Eigen::Vector3i& t : triangles) {
+      for (int k = 0; k < 3; ++k) {
+        if (!buried[std::size_t(t[k])]) continue;
+        for (const int other : {t[(k + 1) % 3], t[(k + 2) % 3]}) {
+          if (buried[std::size_t(other)]) continue;
+          ++neighbours[t[k]];
+          const std::size_t to = std::size_t(t[k]), from = std::size_t(other);
+          for (std::size_t j = 0; j < kHarmonics; ++j) transfer_[to][j] += transfer_[from][j];
+          head_share_[to] += head_share_[from];
+        }
+      }
+    }
+    for (const auto& [vertex, count] : neighbours) {
+      const std::size_t i = std::size_t(vertex);
+      for (float& term : transfer_[i]) term /= float(count);
+      head_share_[i] /= float(count);
+      buried[i] = false;
+    }
+    found = !neighbours.empty();
+  }
 }
 
 std::vector<Eigen::Vector3f> BakedIrradiance::Relight(const HeadLight& light,

@@ -33,17 +33,21 @@ struct SurfacePoint {
   Eigen::Vector3f normal;    // unit
 };
 
-// Irradiance at points of the frame, from what neither frame nor head hides, and the share of the
-// cosine-weighted hemisphere that the head fills.
+// Irradiance at the vertices of the frame, from what neither frame nor head hides, and the share of
+// the cosine-weighted hemisphere that the head fills. Vertices inside another part of the frame,
+// which no light reaches, take the mean of their neighbours outside: a triangle that ends in there
+// is not darker where it comes out.
 class BakedIrradiance {
  public:
-  static BakedIrradiance Bake(const EmbreeScene& scene, const std::vector<SurfacePoint>& points,
-                              int directions);
-  // W/m^2 in units of the environment: one a point, plus pi * head_radiance from the head's part.
+  //   frame  head space, with normals
+  static BakedIrradiance Bake(const EmbreeScene& scene, const TriangleMesh& frame, int directions);
+  // W/m^2 in units of the environment: one a vertex, plus pi * head_radiance from the head's part.
   std::vector<Eigen::Vector3f> Relight(const HeadLight& light,
                                        const Eigen::Vector3f& head_radiance) const;
 
  private:
+  void LightBuried(const std::vector<Eigen::Vector3i>& triangles, std::vector<bool> buried);
+
   std::vector<Harmonics> transfer_;
   std::vector<float> head_share_;
 };
@@ -80,9 +84,9 @@ class BakedShadow {
  private:
   struct Blocked {
     std::uint16_t direction;
-    bool hidden;  // by the face, with or without glasses
-    float cosine;
+    std::uint16_t cosine;  // in units of 1 / kCosineUnits
   };
+  static constexpr float kCosineUnits = 65535;
   struct Touched {
     std::uint32_t point;
     std::uint32_t first_blocked, first_hidden, end_blocked;  // those that the face hides come last
@@ -97,12 +101,21 @@ class BakedShadow {
     Harmonics all;    // as if there were no face
     float share = 1;  // of the cosine-weighted hemisphere that the face leaves open
   };
+  // What the frame blocks from one point: first what the face leaves open, then what it hides with
+  // or without glasses.
+  struct Lists {
+    std::vector<Blocked> blocked;
+    std::uint32_t seen = 0;  // length of the first part
+    bool buried = false;     // all is blocked
+  };
+  static Lists ListBlocked(const EmbreeScene& scene, const std::vector<Eigen::Vector3f>& sphere,
+                           const LatticePoint& at, bool sees_face);
+  static RayPacket PacketToward(const std::vector<Eigen::Vector3f>& sphere,
+                                const Eigen::Vector3f& origin, const std::vector<Blocked>& blocked,
+                                std::size_t first);
   void FindNeighbours();
   void BakeOpenLight(const EmbreeScene& scene, const TriangleMesh& face,
                      const ShadowOptions& options);
-  static void MarkWhatTheFaceHides(const EmbreeScene& scene,
-                                   const std::vector<Eigen::Vector3f>& sphere,
-                                   const Eigen::Vector3f& origin, std::vector<Blocked>& blocked);
 
   FaceLattice lattice_;
   std::vector<Open> open_;  // one a vertex

@@ -175,11 +175,9 @@ TEST(BakedShadow, KnowsItsUntouchedTriangles) {
   }
 }
 
-// A coarse face mesh lets the frame cut into the skin: the points inside it are neither black nor
-// bright, but like those beside it.
-TEST(BakedShadow, GoesOnUnderPointsInsideTheFrame) {
-  TriangleMesh face = test::Wall(20, 0, 4);
-  TriangleMesh box = test::Wall(3, 2, 1);  // lid, floor and four sides of a closed box
+// From z = -2 to 2.
+TriangleMesh ClosedBox(double side_mm) {
+  TriangleMesh box = test::Wall(side_mm, 2, 1);  // lid, floor and four sides of a closed box
   const int lid[4] = {0, 1, 3, 2};
   for (int i = 0; i < 4; ++i) {
     Eigen::Vector3d p = box.positions[std::size_t(i)];
@@ -194,6 +192,14 @@ TEST(BakedShadow, GoesOnUnderPointsInsideTheFrame) {
   box.triangles.emplace_back(4, 7, 5);
   box.triangles.emplace_back(4, 6, 7);
   ComputeVertexNormals(box);
+  return box;
+}
+
+// A coarse face mesh lets the frame cut into the skin: the points inside it are neither black nor
+// bright, but like those beside it.
+TEST(BakedShadow, GoesOnUnderPointsInsideTheFrame) {
+  TriangleMesh face = test::Wall(20, 0, 4);
+  const TriangleMesh box = ClosedBox(3);
   const EmbreeScene scene = *EmbreeScene::Build(face, TriangleMesh{}, box);
   const BakedShadow baked = BakedShadow::Bake(scene, face, box, {});
   const auto ratios = baked.Relight(LightAt(
@@ -227,8 +233,11 @@ TEST(BakedIrradiance, IsPiTimesTheLightInTheOpenAndHalfUnderAWall) {
   wall.triangles = {{0, 1, 2}, {0, 2, 3}};
   ComputeVertexNormals(wall);
   const EmbreeScene scene = *EmbreeScene::Build(test::Wall(1, -500), TriangleMesh{}, wall);
-  const auto baked = BakedIrradiance::Bake(
-      scene, {{{1, 0, 0}, {0, 0, 1}}, {{-1, 0, 0}, {0, 0, 1}}, {{1, 0, 0}, {1, 0, 0}}}, 1024);
+  TriangleMesh frame;
+  frame.positions = {{1, 0, 0}, {-1, 0, 0}, {1, 0, 0}};
+  frame.normals = {{0, 0, 1}, {0, 0, 1}, {1, 0, 0}};
+  frame.triangles = {{0, 1, 2}};
+  const auto baked = BakedIrradiance::Bake(scene, frame, 1024);
   const auto light = LightAt(SphereDirections(1024),
                              BlurredEnvironment::ForCells(Environment::Constant({1, 1, 1}), 1024),
                              Eigen::Matrix3f::Identity(), 1);
@@ -237,6 +246,23 @@ TEST(BakedIrradiance, IsPiTimesTheLightInTheOpenAndHalfUnderAWall) {
   EXPECT_NEAR(irradiance[0].x() / kPi, 0.5, 0.02);
   EXPECT_NEAR(irradiance[1].x() / kPi, 0.5, 0.02);
   EXPECT_NEAR(irradiance[2].x() / kPi, 1.0, 0.02);
+}
+
+TEST(BakedIrradiance, PartsInsideOthersAreLitLikeTheirNeighboursOutside) {
+  // A bar that ends inside a box: the middle one of its three vertices is in there, and the last.
+  const TriangleMesh box = ClosedBox(3);
+  const EmbreeScene scene = *EmbreeScene::Build(test::Wall(1, -500), TriangleMesh{}, box);
+  TriangleMesh bar;
+  bar.positions = {{8, 0, 0}, {0.5, 0, 0}, {0, 0.5, 0}, {0, 0, 0.5}};
+  bar.normals.assign(4, Eigen::Vector3d::UnitX());
+  bar.triangles = {{0, 1, 2}, {1, 3, 2}};
+  const auto baked = BakedIrradiance::Bake(scene, bar, 1024);
+  const auto light = LightAt(SphereDirections(1024),
+                             BlurredEnvironment::ForCells(Environment::Constant({1, 1, 1}), 1024),
+                             Eigen::Matrix3f::Identity(), 1);
+  const auto irradiance = baked.Relight(light, Eigen::Vector3f::Zero());
+  EXPECT_NEAR(irradiance[0].x() / kPi, 1.0, 0.02);
+  for (std::size_t i = 1; i < 4; ++i) EXPECT_FLOAT_EQ(irradiance[i].x(), irradiance[0].x()) << i;
 }
 
 }  // namespace
