@@ -2,6 +2,7 @@
 #include <tbb/parallel_for.h>
 
 #include <algorithm>
+#include <bit>
 #include <cmath>
 
 #include "base/units.h"
@@ -11,9 +12,16 @@ namespace lorgnette {
 namespace {
 
 constexpr int kSide = 64;  // texels of the octahedral map, without its border
-// The environment is first reduced to this width; wide lobes need no more than half.
-constexpr int kSourceWidth = 256;
-constexpr double kWideExponent = 200;
+// The environment is first reduced to a width that gives the lobe cos^n, of deviation 1 / sqrt(n),
+// two texels a deviation.
+constexpr double kTexelsADeviation = 2;
+constexpr unsigned kLeastSourceWidth = 32, kMostSourceWidth = 256;
+
+int SourceWidth(double exponent) {
+  const double wanted = 2 * kPi * kTexelsADeviation * std::sqrt(std::max(exponent, 1.0));
+  return int(std::clamp(std::bit_ceil(unsigned(std::min(wanted, 1e6))), kLeastSourceWidth,
+                        kMostSourceWidth));
+}
 
 // Octahedral coordinates in [-1, 1] of a direction, and back.
 Eigen::Vector2f Fold(const Eigen::Vector3f& d) {
@@ -98,9 +106,33 @@ Source Reduce(const Environment& environment, int width) {
   return out;
 }
 
-// Mean of the map under the kernel cos^exponent about d.
-Eigen::Vector3f Gather(const Source& source, const Eigen::Vector3f& d, float exponent,
-                       float cos_cut) {
+// cos^exponent from cos_cut to 1, linear between 1025 cosines: to 2e-5 of the peak.
+class Kernel {
+ public:
+  Kernel(double exponent, double cos_cut)
+      : cos_cut_(float(cos_cut)), scale_(float(kSteps / (1 - cos_cut))) {
+    for (int i = 0; i <= kSteps; ++i) {
+      values_.push_back(float(std::pow(cos_cut + (1 - cos_cut) * i / kSteps, exponent)));
+    }
+    values_.push_back(values_.back());
+  }
+  float cos_cut() const { return cos_cut_; }
+  float At(float cosine) const {
+    const float at = std::min((cosine - cos_cut_) * scale_, float(kSteps));
+    const int i = int(at);
+    const float* v = &values_[std::size_t(i)];
+    return v[0] + (at - float(i)) * (v[1] - v[0]);
+  }
+
+ private:
+  static constexpr int kSteps = 1024;
+  float cos_cut_, scale_;
+  std::vector<float> values_;
+};
+
+// Mean of the map under the kernel about d.
+Eigen::Vector3f Gather(const Source& source, const Eigen::Vector3f& d, const Kernel& kernel) {
+  const float cos_cut = kernel.cos_cut();
   Eigen::Vector3f sum = Eigen::Vector3f::Zero();
   float weight = 0;
   const float horizontal = std::sqrt(d.x() * d.x() + d.z() * d.z());
@@ -114,7 +146,7 @@ Eigen::Vector3f Gather(const Source& source, const Eigen::Vector3f& d, float exp
       const float cosine =
           d.y() * row.sin_lat + row.cos_lat * (d.x() * column.x() + d.z() * column.y());
       if (cosine < cos_cut) continue;
-      const float w = row.weight * std::pow(cosine, exponent);
+      const float w = row.weight * kernel.At(cosine);
       sum += w * Eigen::Map<const Eigen::Vector3f>(texel);
       weight += w;
     }
@@ -126,18 +158,17 @@ Eigen::Vector3f Gather(const Source& source, const Eigen::Vector3f& d, float exp
 
 BlurredEnvironment::BlurredEnvironment(const Environment& environment, double exponent)
     : map_(kSide + 2, kSide + 2) {
-  const Source source =
-      Reduce(environment, exponent < kWideExponent ? kSourceWidth / 2 : kSourceWidth);
+  const Source source = Reduce(environment, SourceWidth(exponent));
   // Beyond this angle the kernel is below 1/1000 of its peak; at least three source texels wide,
   // so that a kernel finer than the map still finds one.
   const double cut = std::max(1 - std::pow(1e-3, 1 / std::max(exponent, 1e-3)),
                               1 - std::cos(3 * kPi / source.map.height));
-  const float cos_cut = float(std::max(1 - cut, 0.0));
+  const Kernel kernel(exponent, std::max(1 - cut, 0.0));
   tbb::parallel_for(0, kSide + 2, [&](int y) {
     for (int x = 0; x < kSide + 2; ++x) {
       const Eigen::Vector3f d =
           Unfold(float(2 * (x - 0.5) / kSide - 1), float(2 * (y - 0.5) / kSide - 1));
-      const Eigen::Vector3f mean = Gather(source, d, float(exponent), cos_cut);
+      const Eigen::Vector3f mean = Gather(source, d, kernel);
       std::copy(mean.data(), mean.data() + 3, map_.at(x, y));
     }
   });

@@ -28,6 +28,23 @@ Eigen::Vector3f Schlick(const Eigen::Vector3f& along_normal, float cosine, float
   return along_normal + rise * (most - along_normal);
 }
 
+// Of a cosine of incidence on a rounded edge, as the mean over a sample's width counts it. Toward
+// the silhouette of a cylinder the squared cosine grows in proportion to the distance from it, by
+// `rate` over that width; a sample there stands for what lies between the silhouette and its own
+// far side. Without this single samples that graze an edge sparkle.
+float MeanCosine(float cosine, float rate) {
+  const float squared = cosine * cosine;
+  return squared >= rate ? cosine : std::min(std::sqrt(0.5f * (squared + rate)), 1.0f);
+}
+
+// Exponent of a Phong lobe (variance 1 / exponent) as wide as what one sample sees of it where the
+// normal turns by `turn` over the sample's width, and the mirrored ray by twice as much: the
+// variance of that turn, along one of two axes, is added (after Kaplanyan et al. 2016).
+float WidenedExponent(float exponent, float turn) {
+  const float variance = (2 * turn) * (2 * turn) / 12;
+  return std::max(1 / (1 / std::max(exponent, 1.0f) + 0.5f * variance), 1.0f);
+}
+
 // The normal that a tangent-space texture asks for. v of the texture runs downwards, its y up.
 Eigen::Vector3f Bumped(const TriangleMesh& mesh, const Eigen::Vector3i& t,
                        const Eigen::Vector2f& uv, const Eigen::Vector3f& normal,
@@ -179,14 +196,16 @@ Eigen::Vector3f RayFollower::Frame(const SceneHit& hit, const Eigen::Vector3f& p
       const GlossEnd end = gloss ? *gloss
                                  : EndAt(head_.scene.Intersect(RaySet::kAll, ray->origin,
                                                                ray->direction, 0, kEndless));
+      const float turn = 0.5f * TurnAt(hit);  // pixels at an edge have two samples a side
+      const float cosine = MeanCosine(ray->cosine, turn);
       Eigen::Vector3f mirrored = end.radiance;
       if (end.away) {
         const Eigen::Vector3f world = world_from_head_ * ray->direction;
+        const float lobe = WidenedExponent(at.exponent, turn / cosine);
         mirrored = float(head_.options.environment_scale) *
-                   (at.own_lobe ? frame.gloss[frame.gloss_of[part]].Radiance(world)
-                                : frame.GlossAt(at.exponent, world));
+                   (at.own_lobe ? frame.OwnGlossAt(part, lobe, world) : frame.GlossAt(lobe, world));
       }
-      colour += Schlick(at.specular, ray->cosine, at.exponent).cwiseProduct(mirrored);
+      colour += Schlick(at.specular, cosine, at.exponent).cwiseProduct(mirrored);
     }
   }
   return share * at.cover * colour;

@@ -19,6 +19,7 @@ FrameSurface JoinParts(const Eyewear& eyewear, const Environment& environment) {
   FrameSurface out;
   out.frame_from_head = eyewear.head_from_frame.inverse();
   std::vector<float> lobes;
+  bool textured = false;
   for (const FramePart& part : eyewear.frame.parts) {
     if (part.kind == FramePartKind::kDemoLens || part.mesh.empty()) continue;
     TriangleMesh mesh = part.mesh;
@@ -36,15 +37,24 @@ FrameSurface JoinParts(const Eyewear& eyewear, const Environment& environment) {
       lobes.push_back(part.material.shininess);
       out.gloss.push_back(BlurredEnvironment::ForPhong(environment, part.material.shininess));
     }
-    if (out.lobes.empty() && part.material.pbr != nullptr &&
-        part.material.pbr->metallic_roughness_texture != nullptr) {
-      for (const float exponent : FrameSurface::kLobes) {
-        out.lobes.push_back(BlurredEnvironment::ForPhong(environment, double(exponent)));
-      }
-    }
+    textured = textured || (part.material.pbr != nullptr &&
+                            part.material.pbr->metallic_roughness_texture != nullptr);
     Append(out.mesh, mesh);
   }
+  for (double exponent = 1; exponent <= (textured ? 1024 : 64); exponent *= 4) {
+    out.lobes.push_back(BlurredEnvironment::ForPhong(environment, exponent));
+  }
   for (const Eigen::Vector3d& n : out.mesh.normals) out.normals.push_back(n.cast<float>());
+  for (const Eigen::Vector3i& t : out.mesh.triangles) {
+    double most = 0;
+    for (int k = 0; k < 3; ++k) {
+      const std::size_t a = std::size_t(t[k]), b = std::size_t(t[(k + 1) % 3]);
+      const double side = (out.mesh.positions[a] - out.mesh.positions[b]).norm();
+      if (side > 0)
+        most = std::max(most, (out.mesh.normals[a] - out.mesh.normals[b]).norm() / side);
+    }
+    out.curvature.push_back(float(most));
+  }
   double ear_z = 0.5 * (eyewear.frame.ear_point_right.z() + eyewear.frame.ear_point_left.z());
   if (ear_z >= 0) ear_z = -0.7 * eyewear.frame.temple_length_mm;
   out.fade_start_z = kFadeStart * ear_z;
@@ -80,6 +90,15 @@ Eigen::Vector3f FrameSurface::GlossAt(float exponent, const Eigen::Vector3f& dir
   const std::size_t low = std::min(std::size_t(at), lobes.size() - 2);
   const float share = at - float(low);
   return (1 - share) * lobes[low].Radiance(direction) + share * lobes[low + 1].Radiance(direction);
+}
+
+Eigen::Vector3f FrameSurface::OwnGlossAt(std::size_t part, float exponent,
+                                         const Eigen::Vector3f& direction) const {
+  const Eigen::Vector3f own = gloss[gloss_of[part]].Radiance(direction);
+  // One octave to go over from the part's own table to those of all.
+  const float share = std::min(std::log2(float(materials[part].shininess) / exponent), 1.0f);
+  return share > 0 ? Eigen::Vector3f((1 - share) * own + share * GlossAt(exponent, direction))
+                   : own;
 }
 
 Result<HeadScene> HeadScene::Build(const Eyewear& eyewear, const TriangleMesh& face,

@@ -22,15 +22,18 @@ struct FrameSurface {
   TriangleMesh mesh;                       // head space, with normals and uvs
   std::vector<Eigen::Vector3f> normals;    // the mesh's, as every ray reads them
   std::vector<std::uint16_t> material_of;  // one a triangle
+  std::vector<float> curvature;            // one a triangle: most turn of the normal, 1/mm
   std::vector<FrameMaterial> materials;    // one a part
   std::vector<bool> fades;                 // one a part: a temple
   std::vector<BlurredEnvironment> gloss;   // the environment under each Phong lobe in use
   std::vector<std::uint16_t> gloss_of;     // one a part
-  // Under lobes of exponents kLobes, where a texture chooses; empty: none does.
+  // Under lobes of exponents 1, 4, 16, 64; where a texture chooses, of 256 and 1024 too.
   std::vector<BlurredEnvironment> lobes;
-  static constexpr float kLobes[6] = {1, 4, 16, 64, 256, 1000};
   // Radiance along a world direction under a lobe, between the two nearest of `lobes`.
   Eigen::Vector3f GlossAt(float exponent, const Eigen::Vector3f& direction) const;
+  // The same under the part's own lobe, widened to `exponent`.
+  Eigen::Vector3f OwnGlossAt(std::size_t part, float exponent,
+                             const Eigen::Vector3f& direction) const;
   Eigen::Isometry3d frame_from_head = Eigen::Isometry3d::Identity();
   double fade_start_z = 0, fade_end_z = 0;  // frame coordinates: opaque before, gone after
 };

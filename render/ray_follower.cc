@@ -62,6 +62,7 @@ RayFollower::RayFollower(const HeadScene& head, const PictureView& picture, cons
                          const Eigen::Isometry3d& camera_from_head, const PictureEffects& effects)
     : head_(head),
       effects_(effects),
+      pixel_mm_(float(std::abs(camera_from_head.translation().z()) / camera.fx)),
       world_from_head_(
           (head.options.world_from_camera * camera_from_head.rotation()).cast<float>()),
       picture_(picture) {
@@ -265,7 +266,9 @@ Eigen::Vector3f RayFollower::Inside(std::size_t lens, const Ray& ray, double wei
     if (rim.hit()) {
       const Eigen::Vector3f at = origin + rim.distance * direction;
       const Eigen::Vector3d point = ray.origin + double(rim.distance) * ray.direction;
-      return looks_[lens].tint.Between(ray.origin, point).cwiseProduct(Frame(rim, at, direction));
+      return looks_[lens]
+          .tint.Between(ray.origin, point)
+          .cwiseProduct(Frame(rim, at, direction, GlossEnd::InGroove()));
     }
   }
   const Eigen::Vector3f tint = looks_[lens].tint.Between(ray.origin, hit->point);

@@ -19,6 +19,10 @@ namespace lorgnette {
 struct GlossEnd {
   bool away = false;
   Eigen::Vector3f radiance{0, 0, 0};  // of skin, or of the frame itself
+
+  // Of a point of the frame that is met from inside a lens: it lies in the groove, against the
+  // glass, where there is nothing to mirror.
+  static GlossEnd InGroove() { return {}; }
 };
 
 // What one pixel's rays share.
@@ -101,6 +105,10 @@ class RayFollower {
   std::optional<GlossRay> GlossOf(const SceneHit& hit, const Eigen::Vector3f& point,
                                   const Eigen::Vector3f& direction) const;
   GlossEnd EndAt(const SceneHit& hit) const;  // of a ray that GlossOf gave
+  // How far the frame's normal turns over a pixel there, radians.
+  float TurnAt(const SceneHit& hit) const {
+    return head_.frame.curvature[hit.triangle] * pixel_mm_;
+  }
   // The edge wall as EdgeFinish::kGround.
   Eigen::Vector3f GroundEdge() const;
   // Radiance of the frame's triangles at their corners, without highlights.
@@ -143,6 +151,7 @@ class RayFollower {
 
   const HeadScene& head_;
   PictureEffects effects_;
+  float pixel_mm_;  // at the head
   std::vector<ColourBand> bands_;
   std::vector<std::vector<double>> index_;  // by PixelState::band, then one a lens
   std::vector<LensLook> looks_;             // one a lens

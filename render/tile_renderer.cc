@@ -77,7 +77,7 @@ struct TileRenderer::Batch {
   RayBundle rim, main, front_reflection, back_reflection;
   std::vector<std::uint32_t> main_of, front_of, back_of;
   std::vector<Eigen::Vector3f> back_weight;
-  // Mirrored by the frame: where they end, of pixels or of a bundle's rays.
+  // Mirrored by the frame: where they end, of samples or of a bundle's rays.
   RayBundle gloss;
   std::vector<std::uint32_t> gloss_of;
   std::vector<std::optional<GlossEnd>> gloss_ends;
@@ -122,7 +122,9 @@ void TileRenderer::Direct(std::size_t i, const Batch& batch, std::vector<CameraS
     passed = follower_.FramePasses(hit, point, direction);
     if (passed.minCoeff() < 1) {
       sample.kind = CameraSample::Kind::kFrame;
-      sample.inserted = follower_.Frame(hit, point, direction, pixels[sample.pixel].frame_gloss);
+      const std::optional<GlossEnd>& own = batch.gloss_ends[i];
+      sample.inserted =
+          follower_.Frame(hit, point, direction, own ? own : pixels[sample.pixel].frame_gloss);
     }
     if (passed.maxCoeff() > 0) {
       hit = head_.scene.Intersect(RaySet::kHead, origin, direction, 0, kEndless);
@@ -136,26 +138,33 @@ void TileRenderer::Direct(std::size_t i, const Batch& batch, std::vector<CameraS
   }
 }
 
-// Where the frame, seen directly, mirrors: one ray a pixel.
+// Where the frame, seen directly, mirrors: one ray a pixel where it is flat, one a sample else.
 void TileRenderer::TraceGloss(Batch& batch, const std::vector<CameraSample>& samples,
                               std::vector<PixelState>& pixels) const {
+  constexpr float kFlat = 0.25f;  // turn of the normal over a pixel, radians
   batch.gloss.Clear();
   batch.gloss_of.clear();
+  batch.gloss_ends.assign(samples.size(), std::nullopt);
   for (std::size_t i = 0; i < samples.size(); ++i) {
     const SceneHit& hit = batch.primary.hits[i];
+    if (hit.object != SceneObject::kFrame || batch.lens_of[i] != 0) continue;
+    const bool flat = follower_.TurnAt(hit) < kFlat;
     PixelState& pixel = pixels[samples[i].pixel];
-    if (hit.object != SceneObject::kFrame || batch.lens_of[i] != 0 || pixel.frame_gloss) continue;
+    if (flat && pixel.frame_gloss) continue;
     const Eigen::Vector3f& direction = batch.primary.directions[i];
     const Eigen::Vector3f point = batch.primary.origins[i] + hit.distance * direction;
     const auto ray = follower_.GlossOf(hit, point, direction);
     if (!ray) continue;
-    pixel.frame_gloss = GlossEnd{};
+    if (flat) pixel.frame_gloss = GlossEnd{};
     batch.gloss.Add(ray->origin, ray->direction);
-    batch.gloss_of.push_back(samples[i].pixel);
+    batch.gloss_of.push_back(std::uint32_t(i));
   }
   batch.gloss.Trace(head_.scene, RaySet::kAll);
   for (std::size_t j = 0; j < batch.gloss_of.size(); ++j) {
-    pixels[batch.gloss_of[j]].frame_gloss = follower_.EndAt(batch.gloss.hits[j]);
+    const std::uint32_t i = batch.gloss_of[j];
+    const GlossEnd end = follower_.EndAt(batch.gloss.hits[j]);
+    batch.gloss_ends[i] = end;
+    if (follower_.TurnAt(batch.primary.hits[i]) < kFlat) pixels[samples[i].pixel].frame_gloss = end;
   }
 }
 
@@ -425,7 +434,6 @@ void TileRenderer::TraceLens(std::size_t lens, Batch& batch, std::vector<CameraS
                   (r.second_point - r.first_point).norm());
   }
   batch.rim.Trace(head_.scene, RaySet::kFrame);
-  TraceGloss(batch, batch.rim);
 
   const LensLook& look = follower_.look(lens);
   batch.main.Clear();
@@ -452,7 +460,7 @@ void TileRenderer::TraceLens(std::size_t lens, Batch& batch, std::vector<CameraS
         const Eigen::Vector3f point = batch.rim.origins[j] + hit.distance * in_glass;
         sample.kind = CameraSample::Kind::kFrame;
         sample.inserted +=
-            r.entered.cwiseProduct(follower_.Frame(hit, point, in_glass, batch.gloss_ends[j]));
+            r.entered.cwiseProduct(follower_.Frame(hit, point, in_glass, GlossEnd::InGroove()));
         continue;
       }
     }
@@ -515,7 +523,6 @@ void TileRenderer::TraceLens(std::size_t lens, Batch& batch, std::vector<CameraS
     batch.rim.Add(to_head(from), head_from_lens * along, float(crossing->t));
   }
   batch.rim.Trace(head_.scene, RaySet::kFrame);
-  TraceGloss(batch, batch.rim);
   const Eigen::Vector3f wall = follower_.GroundEdge();
   batch.back_weight.clear();
   std::size_t kept = 0;
@@ -533,7 +540,7 @@ void TileRenderer::TraceLens(std::size_t lens, Batch& batch, std::vector<CameraS
         const Eigen::Vector3f& direction = batch.rim.directions[at];
         const Eigen::Vector3f point = batch.rim.origins[at] + hit.distance * direction;
         sample.inserted +=
-            weight.cwiseProduct(follower_.Frame(hit, point, direction, batch.gloss_ends[at]));
+            weight.cwiseProduct(follower_.Frame(hit, point, direction, GlossEnd::InGroove()));
         continue;
       }
     }

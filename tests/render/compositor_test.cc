@@ -6,6 +6,7 @@
 
 #include <cmath>
 
+#include "geometry/sweep.h"
 #include "render/color.h"
 #include "tests/render/render_test_scene.h"
 
@@ -120,6 +121,57 @@ TEST(Compositor, ShowsNoBlackOnMetalInAWhiteFurnace) {
   EXPECT_GT(seen, 1000);
   // Twice mirrored, and at least half of the sky is open to the second mirror.
   EXPECT_GT(least, 0.5f * kMetal * kMetal);
+}
+
+// The light of a window, mirrored by a bar thinner than a pixel, is a line and no row of dots.
+TEST(Compositor, MirrorsAWindowInAThinBarWithoutDots) {
+  constexpr double kRadius_mm = 0.4, kSlope = 0.12;
+  Eyewear eyewear = test::MakeEyewear({});
+  BarShape shape;
+  shape.section = Superellipse(24, 2);
+  FramePart bar;
+  bar.kind = FramePartKind::kFront;
+  bar.mesh = SweepBar(
+      [&](double v, double q, double w) {
+        const double x = 200 * (v - 0.5);
+        return Eigen::Vector3d(x, 30 + kSlope * x + kRadius_mm * q, 20 + kRadius_mm * w);
+      },
+      shape);
+  bar.material.diffuse.setZero();
+  bar.material.specular.setConstant(0.5f);
+  bar.material.shininess = 90;
+  eyewear.frame.parts = {bar};
+  ImageRgbF sky(128, 64);
+  for (int y = 10; y < 16; ++y) {
+    for (int x = 56; x < 64; ++x) std::fill_n(sky.at(x, y), 3, 60.0f);
+  }
+  const test::View view = Front();
+  const ImageRgbF input = test::ConstantImage(kViewWidth, kViewHeight, 0);
+  // Mean and deviation of the columns' light.
+  const auto along = [&](int samples) {
+    CompositorOptions options;
+    options.shadow = ShadowMode::kNone;
+    options.samples_per_side = samples;
+    const ImageRgbF output = Make(eyewear, test::Wall(600, 0), Environment(sky), options)
+                                 .Render(input, view.camera, view.camera_from_head);
+    double sum = 0, squares = 0;
+    for (int x = 60; x < 180; ++x) {
+      double column = 0;
+      for (int y = 0; y < 60; ++y) column += double(output.at(x, y)[1]);
+      sum += column;
+      squares += column * column;
+    }
+    const double mean = sum / 120;
+    return std::pair(mean, std::sqrt(std::max(0.0, squares / 120 - mean * mean)));
+  };
+  const auto [truth, unevenness] = along(12);
+  EXPECT_LT(unevenness / truth, 0.15);
+  // Without widened lobes 1.5 and 0.8.
+  for (const auto& [samples, bound] : {std::pair(2, 0.8), std::pair(4, 0.2)}) {
+    const auto [mean, deviation] = along(samples);
+    EXPECT_NEAR(mean / truth, 1, 0.05) << samples;
+    EXPECT_LT(deviation / mean, bound) << samples;
+  }
 }
 
 TEST(Compositor, GivesTheSamePixelsOnAnyNumberOfThreads) {
