@@ -2,7 +2,9 @@
 #include <tbb/parallel_for.h>
 
 #include <algorithm>
+#include <bit>
 #include <limits>
+#include <numeric>
 
 #include "base/units.h"
 #include "render/lighting.h"
@@ -31,11 +33,37 @@ BakedShadow BakedShadow::Bake(const EmbreeScene& scene, const TriangleMesh& face
 
   const std::vector<Eigen::Vector3f> sphere = SphereDirections(options.directions);
   std::vector<Lists> lists(points.size());
-  std::vector<bool> is_between(points.size(), false);
-  for (const FaceLattice::Between& b : baked.lattice_.between()) is_between[b.point] = true;
-  tbb::parallel_for(std::size_t(0), points.size(), [&](std::size_t i) {
-    if (!is_between[i]) lists[i] = ListBlocked(scene, sphere, points[i], options.sees_face);
-  });
+  const auto trace = [&](const std::vector<std::uint32_t>& which) {
+    tbb::parallel_for(std::size_t(0), which.size(), [&](std::size_t k) {
+      lists[which[k]] = ListBlocked(scene, sphere, points[which[k]], options.sees_face);
+    });
+  };
+  // A point between two others is traced where they do not see about the same of the frame.
+  std::vector<bool> waits(points.size(), false);
+  for (const auto& level : baked.lattice_.between()) {
+    for (const FaceLattice::Between& b : level) waits[b.point] = true;
+  }
+  std::vector<std::uint32_t> now;
+  for (std::uint32_t i = 0; i < points.size(); ++i) {
+    if (!waits[i]) now.push_back(i);
+  }
+  trace(now);
+  std::vector<std::uint32_t> stands_for(
+      points.size());  // a traced point, beside those that are not
+  std::iota(stands_for.begin(), stands_for.end(), 0u);
+  for (const auto& level : baked.lattice_.between()) {
+    now.clear();
+    for (const FaceLattice::Between& b : level) {
+      const Lists &one = lists[stands_for[b.one]], &other = lists[stands_for[b.other]];
+      if (one.buried || other.buried || one.DifferenceTo(other) > options.most_difference) {
+        now.push_back(b.point);
+      } else {
+        stands_for[b.point] = stands_for[b.one];
+        baked.means_.push_back(b);
+      }
+    }
+    trace(now);
+  }
 
   std::vector<bool> is_touched(points.size(), false);
   std::uint32_t end = 0;
@@ -54,7 +82,7 @@ BakedShadow BakedShadow::Bake(const EmbreeScene& scene, const TriangleMesh& face
     std::ranges::copy(lists[point.point].blocked, baked.blocked_.begin() + point.first_blocked);
   });
   baked.FindNeighbours();
-  for (const FaceLattice::Between& b : baked.lattice_.between()) {
+  for (const FaceLattice::Between& b : baked.means_) {
     is_touched[b.point] = is_touched[b.one] || is_touched[b.other];
   }
   baked.lattice_.Touch(is_touched);
@@ -104,7 +132,23 @@ BakedShadow::Lists BakedShadow::ListBlocked(const EmbreeScene& scene,
   lists.blocked.reserve(blocked.size() + hidden.size());
   lists.blocked.assign(blocked.begin(), blocked.end());
   lists.blocked.insert(lists.blocked.end(), hidden.begin(), hidden.end());
+  for (std::size_t part = 0; part < 2; ++part) {
+    lists.bits[part].assign((sphere.size() + 63) / 64, 0);
+    for (const Blocked& b : part == 0 ? blocked : hidden) {
+      lists.bits[part][b.direction / 64] |= std::uint64_t(1) << (b.direction % 64);
+    }
+  }
   return lists;
+}
+
+float BakedShadow::Lists::DifferenceTo(const Lists& other) const {
+  int differ = 0;
+  for (std::size_t part = 0; part < 2; ++part) {
+    for (std::size_t k = 0; k < bits[part].size(); ++k) {
+      differ += std::popcount(bits[part][k] ^ other.bits[part][k]);
+    }
+  }
+  return float(differ) / (32 * float(bits[0].size()));  // half of the directions are above
 }
 
 void BakedShadow::FindNeighbours() {
@@ -231,7 +275,7 @@ std::vector<Eigen::Vector3f> BakedShadow::Relight(const HeadLight& light) const 
   for (const Touched& point : touched_) {
     if (point.buried) ratios[point.point] = ratios[point.like];
   }
-  for (const FaceLattice::Between& b : lattice_.between()) {
+  for (const FaceLattice::Between& b : means_) {
     ratios[b.point] = (ratios[b.one] + ratios[b.other]) / 2;
   }
   return ratios;

@@ -11,7 +11,16 @@
 namespace lorgnette {
 namespace {
 
-constexpr int kSide = 64;  // texels of the octahedral map, without its border
+// Texels of the octahedral map, without its border: 2.5 a deviation of the lobe cos^n, which is
+// 1 / sqrt(n), and no more than the narrow lobes of light cells need.
+constexpr double kMapTexelsADeviation = 2.5;
+constexpr unsigned kLeastSide = 8, kMostSide = 64;
+
+int MapSide(double exponent) {
+  const double wanted = kPi * kMapTexelsADeviation * std::sqrt(std::max(exponent, 1.0));
+  return int(std::clamp(std::bit_ceil(unsigned(std::min(wanted, 1e6))), kLeastSide, kMostSide));
+}
+
 // The environment is first reduced to a width that gives the lobe cos^n, of deviation 1 / sqrt(n),
 // two texels a deviation.
 constexpr double kTexelsADeviation = 2;
@@ -60,6 +69,10 @@ struct Source {
   ImageRgbF map;
   std::vector<SourceRow> rows;
   std::vector<Eigen::Vector2f> columns;  // -sin lon, cos lon
+  float columns_a_radian = 1;            // of longitude
+
+  // The column, in fractions, whose middle lies at a longitude.
+  float ColumnAt(float lon) const { return (lon + float(kPi)) * columns_a_radian - 0.5f; }
 };
 
 // The map on a grid fine enough for the kernel: interpolated where it has fewer texels.
@@ -98,6 +111,7 @@ Source Reduce(const Environment& environment, int width) {
     out.rows.push_back(
         {float(std::sin(lat)), float(std::cos(lat)), float(std::cos(lat) * (y1 - y * factor))});
   }
+  out.columns_a_radian = float(in.width / (2 * kPi * factor));
   for (int x = 0; x < out.map.width; ++x) {
     const int x1 = std::min((x + 1) * factor, in.width);
     const double lon = 2 * kPi * (0.5 * (x * factor + x1) / in.width - 0.5);
@@ -136,12 +150,23 @@ Eigen::Vector3f Gather(const Source& source, const Eigen::Vector3f& d, const Ker
   Eigen::Vector3f sum = Eigen::Vector3f::Zero();
   float weight = 0;
   const float horizontal = std::sqrt(d.x() * d.x() + d.z() * d.z());
+  const float middle = source.ColumnAt(std::atan2(-d.x(), d.z()));
+  const int width = source.map.width;
   for (int y = 0; y < source.map.height; ++y) {
     const SourceRow& row = source.rows[std::size_t(y)];
     // The best any column of this row can do.
-    if (d.y() * row.sin_lat + horizontal * row.cos_lat < cos_cut) continue;
-    const float* texel = source.map.at(0, y);
-    for (int x = 0; x < source.map.width; ++x, texel += 3) {
+    const float best = horizontal * row.cos_lat, wanted = cos_cut - d.y() * row.sin_lat;
+    if (best < wanted) continue;
+    // Columns that can reach the cut lie this far to either side; one more for the last, which may
+    // be narrower than the others.
+    const float away =
+        wanted <= -best ? float(width) : std::acos(wanted / best) * source.columns_a_radian + 2;
+    const bool all = 2 * away + 1 >= float(width);
+    const int first = all ? 0 : int(std::floor(middle - away));
+    const int end = all ? width : int(std::ceil(middle + away)) + 1;
+    for (int at = first; at < end; ++at) {
+      const int x = at < 0 ? at + width : at < width ? at : at - width;
+      const float* texel = source.map.at(x, y);
       const Eigen::Vector2f& column = source.columns[std::size_t(x)];
       const float cosine =
           d.y() * row.sin_lat + row.cos_lat * (d.x() * column.x() + d.z() * column.y());
@@ -157,17 +182,17 @@ Eigen::Vector3f Gather(const Source& source, const Eigen::Vector3f& d, const Ker
 }  // namespace
 
 BlurredEnvironment::BlurredEnvironment(const Environment& environment, double exponent)
-    : map_(kSide + 2, kSide + 2) {
+    : side_(MapSide(exponent)), map_(side_ + 2, side_ + 2) {
   const Source source = Reduce(environment, SourceWidth(exponent));
   // Beyond this angle the kernel is below 1/1000 of its peak; at least three source texels wide,
   // so that a kernel finer than the map still finds one.
   const double cut = std::max(1 - std::pow(1e-3, 1 / std::max(exponent, 1e-3)),
                               1 - std::cos(3 * kPi / source.map.height));
   const Kernel kernel(exponent, std::max(1 - cut, 0.0));
-  tbb::parallel_for(0, kSide + 2, [&](int y) {
-    for (int x = 0; x < kSide + 2; ++x) {
+  tbb::parallel_for(0, side_ + 2, [&](int y) {
+    for (int x = 0; x < side_ + 2; ++x) {
       const Eigen::Vector3f d =
-          Unfold(float(2 * (x - 0.5) / kSide - 1), float(2 * (y - 0.5) / kSide - 1));
+          Unfold(float(2 * (x - 0.5) / side_ - 1), float(2 * (y - 0.5) / side_ - 1));
       const Eigen::Vector3f mean = Gather(source, d, kernel);
       std::copy(mean.data(), mean.data() + 3, map_.at(x, y));
     }
@@ -185,9 +210,9 @@ BlurredEnvironment BlurredEnvironment::ForPhong(const Environment& environment, 
 
 Eigen::Vector3f BlurredEnvironment::Radiance(const Eigen::Vector3f& direction) const {
   const Eigen::Vector2f p = Fold(direction);
-  const float column = (p.x() + 1) * (0.5f * kSide) + 0.5f;
-  const float row = (p.y() + 1) * (0.5f * kSide) + 0.5f;
-  const int x = std::min(int(column), kSide), y = std::min(int(row), kSide);
+  const float scale = 0.5f * float(side_);
+  const float column = (p.x() + 1) * scale + 0.5f, row = (p.y() + 1) * scale + 0.5f;
+  const int x = std::min(int(column), side_), y = std::min(int(row), side_);
   const float fx = column - float(x), fy = row - float(y);
   using Texel = Eigen::Map<const Eigen::Vector3f>;
   return (1 - fy) * ((1 - fx) * Texel(map_.at(x, y)) + fx * Texel(map_.at(x + 1, y))) +

@@ -78,13 +78,23 @@ ContourIndex::ContourIndex(std::vector<Eigen::Vector2d> polygon) : polygon_(std:
   }
 
   std::vector<float> distance;
+  std::size_t likely = 0;  // the run that was nearest to the cell before
   for (int row = 0; row < rows_; ++row) {
     for (int column = 0; column < columns_; ++column) {
       const Eigen::Vector2d centre = grid_low_ + cell_ * Eigen::Vector2d(column + 0.5, row + 0.5);
       double nearest2 = std::numeric_limits<double>::infinity();
-      for (std::size_t i = 0; i < n; ++i) {
-        nearest2 = std::min(nearest2,
-                            SquaredDistanceToSegment(centre, polygon_[i], polygon_[(i + 1) % n]));
+      const std::size_t start = likely;
+      for (std::size_t k = 0; k < runs_.size(); ++k) {
+        const std::size_t at = (start + k) % runs_.size();
+        const Run& run = runs_[at];
+        const double least = (run.centre - centre).norm() - run.radius;
+        if (least > 0 && least * least >= nearest2) continue;
+        for (std::size_t i = run.first; i < run.end; ++i) {
+          const double d2 = SquaredDistanceToSegment(centre, polygon_[i], polygon_[(i + 1) % n]);
+          if (d2 >= nearest2) continue;
+          nearest2 = d2;
+          likely = at;
+        }
       }
       const double sign = Contains(centre.x(), centre.y()) ? 1 : -1;
       distance.push_back(float(sign * std::sqrt(nearest2)));

@@ -67,6 +67,7 @@ class BlurredEnvironment {
 
  private:
   BlurredEnvironment(const Environment& environment, double exponent);
+  int side_;       // texels of the map, without its border
   ImageRgbF map_;  // with a border of one texel on every side
 };
 

@@ -99,7 +99,7 @@ FaceLattice::FaceLattice(const TriangleMesh& face, const TriangleMesh& frame, do
                          double far_mm) {
   const NearFrame near_frame(frame);
   SharedPoints shared;
-  std::vector<bool> is_between;
+  std::vector<int> level_of;  // of the points: 0 where they are between no two others
   for (std::size_t t = 0; t < face.triangles.size(); ++t) {
     const Eigen::Vector3i& triangle = face.triangles[t];
     const Eigen::Vector3d corners[3] = {face.positions[std::size_t(triangle[0])],
@@ -118,24 +118,27 @@ FaceLattice::FaceLattice(const TriangleMesh& face, const TriangleMesh& frame, do
     const auto corner = [&](int i, int j) -> std::uint32_t& {
       return corners_[lattices_.back().first + std::size_t(IndexInLattice(cells, i, j))];
     };
-    // First every second point each way, then those between them.
-    for (const bool odd : {false, true}) {
-      for (int j = 0; j <= cells; ++j) {
-        for (int i = 0; i + j <= cells; ++i) {
-          if (((i | j) % 2 != 0) != odd) continue;
+    // First every fourth point each way, then every second, then all.
+    for (int level = 0; level <= kLevels; ++level) {
+      const int step = 1 << (kLevels - level);
+      for (int j = 0; j <= cells; j += step) {
+        for (int i = 0; i + j <= cells; i += step) {
+          if (level > 0 && (i | j) % (2 * step) == 0) continue;
           bool is_new = true;
           corner(i, j) = shared.Index(triangle, cells, i, j, std::uint32_t(points_.size()), is_new);
           if (!is_new) continue;
-          const LatticePoint& point = points_.emplace_back(
+          points_.push_back(
               PointOf(face, std::uint32_t(t), float(i) / float(cells), float(j) / float(cells)));
-          is_between.push_back(false);
-          if (!odd || !near || near_frame.Contains(point.position.cast<double>())) continue;
-          const int di = i % 2, dj = i % 2 != 0 ? -(j % 2) : 1;
+          level_of.push_back(0);
+          if (level == 0) continue;
+          // Along the side of the triangle of coarser points on whose middle this one lies.
+          const bool odd_i = i % (2 * step) != 0, odd_j = j % (2 * step) != 0;
+          const int di = odd_i ? step : 0, dj = odd_j ? (odd_i ? -step : step) : 0;
           if (i + di + j + dj > cells || i - di + j - dj > cells) continue;
           const std::uint32_t one = corner(i + di, j + dj), other = corner(i - di, j - dj);
-          if (is_between[one] || is_between[other]) continue;
-          is_between.back() = true;
-          between_.push_back({corner(i, j), one, other});
+          if (level_of[one] >= level || level_of[other] >= level) continue;
+          level_of.back() = level;
+          between_[std::size_t(level - 1)].push_back({corner(i, j), one, other});
         }
       }
     }

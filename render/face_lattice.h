@@ -4,6 +4,7 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <array>
 #include <cstdint>
 #include <vector>
 
@@ -26,12 +27,13 @@ class FaceLattice {
   FaceLattice(const TriangleMesh& face, const TriangleMesh& frame, double near_mm, double far_mm);
 
   const std::vector<LatticePoint>& points() const { return points_; }
-  // Points in the middle between two others, of a triangle that is near the frame in another part:
-  // there the mean of the two will do. The two are no such points.
+  // Points in the middle between two others, where their mean may do, coarse ones first: a point's
+  // two others are of no list, or of one before its own.
   struct Between {
     std::uint32_t point, one, other;
   };
-  const std::vector<Between>& between() const { return between_; }
+  static constexpr int kLevels = 2;
+  const std::array<std::vector<Between>, kLevels>& between() const { return between_; }
   // Triangles with a marked point are touched; the values of the others are not asked for.
   void Touch(const std::vector<bool>& marked);
   bool touched(std::uint32_t triangle) const { return lattices_[triangle].touched; }
@@ -49,7 +51,7 @@ class FaceLattice {
     bool touched = false;
   };
   std::vector<LatticePoint> points_;
-  std::vector<Between> between_;
+  std::array<std::vector<Between>, kLevels> between_;
   std::vector<Lattice> lattices_;       // one a triangle
   std::vector<std::uint32_t> corners_;  // point indices, (cells + 1)(cells + 2) / 2 a triangle
 };

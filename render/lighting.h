@@ -61,6 +61,9 @@ struct ShadowOptions {
   bool sees_face = true;                               // S_noGlasses with the face as an occluder
   int directions = 1024;                               // multiple of 16
   double spacing_near_mm = 1.0, spacing_far_mm = 3.0;  // of points, near the frame and elsewhere
+  // A point takes the mean of two on either side where the frame blocks the same directions for
+  // both, but for this share of the hemisphere.
+  float most_difference = 0.1f;
 };
 
 // Equation (2) of the paper from baked visibility.
@@ -105,8 +108,10 @@ class BakedShadow {
   // or without glasses.
   struct Lists {
     std::vector<Blocked> blocked;
-    std::uint32_t seen = 0;  // length of the first part
-    bool buried = false;     // all is blocked
+    std::uint32_t seen = 0;                        // length of the first part
+    bool buried = false;                           // all is blocked
+    std::vector<std::uint64_t> bits[2];            // of the directions in each part
+    float DifferenceTo(const Lists& other) const;  // share of the hemisphere's directions
   };
   static Lists ListBlocked(const EmbreeScene& scene, const std::vector<Eigen::Vector3f>& sphere,
                            const LatticePoint& at, bool sees_face);
@@ -118,7 +123,8 @@ class BakedShadow {
                      const ShadowOptions& options);
 
   FaceLattice lattice_;
-  std::vector<Open> open_;  // one a vertex
+  std::vector<FaceLattice::Between> means_;  // points that take the mean of two before them
+  std::vector<Open> open_;                   // one a vertex
   std::vector<Touched> touched_;
   std::vector<Blocked> blocked_;
 };
