@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <bit>
 #include <cmath>
+#include <optional>
 
 #include "base/units.h"
 #include "render/environment.h"
@@ -75,11 +76,8 @@ struct Source {
   float ColumnAt(float lon) const { return (lon + float(kPi)) * columns_a_radian - 0.5f; }
 };
 
-// The map on a grid fine enough for the kernel: interpolated where it has fewer texels.
-ImageRgbF AtLeast(const Environment& environment, int width, int height) {
-  if (environment.map().width >= width && environment.map().height >= height) {
-    return environment.map();
-  }
+// The map on a grid fine enough for the kernel, where its own has fewer texels.
+ImageRgbF Interpolated(const Environment& environment, int width, int height) {
   const Environment grid(ImageRgbF(width, height));
   ImageRgbF map(width, height);
   for (int y = 0; y < height; ++y) {
@@ -92,11 +90,16 @@ ImageRgbF AtLeast(const Environment& environment, int width, int height) {
 }
 
 Source Reduce(const Environment& environment, int width) {
-  const ImageRgbF in = AtLeast(environment, width, width / 2);
+  std::optional<ImageRgbF> finer;
+  if (environment.map().width < width || environment.map().height < width / 2) {
+    finer = Interpolated(environment, width, width / 2);
+  }
+  const ImageRgbF& in = finer ? *finer : environment.map();
   const int factor = std::max(1, in.width / width);
   Source out;
   out.map = ImageRgbF((in.width + factor - 1) / factor, (in.height + factor - 1) / factor);
-  for (int y = 0; y < out.map.height; ++y) {
+  out.rows.resize(std::size_t(out.map.height));
+  tbb::parallel_for(0, out.map.height, [&](int y) {
     const int y1 = std::min((y + 1) * factor, in.height);
     for (int x = 0; x < out.map.width; ++x) {
       const int x1 = std::min((x + 1) * factor, in.width);
@@ -108,9 +111,9 @@ Source Reduce(const Environment& environment, int width) {
       std::copy(sum.data(), sum.data() + 3, out.map.at(x, y));
     }
     const double lat = kPi * (0.5 - 0.5 * (y * factor + y1) / in.height);
-    out.rows.push_back(
-        {float(std::sin(lat)), float(std::cos(lat)), float(std::cos(lat) * (y1 - y * factor))});
-  }
+    out.rows[std::size_t(y)] = {float(std::sin(lat)), float(std::cos(lat)),
+                                float(std::cos(lat) * (y1 - y * factor))};
+  });
   out.columns_a_radian = float(in.width / (2 * kPi * factor));
   for (int x = 0; x < out.map.width; ++x) {
     const int x1 = std::min((x + 1) * factor, in.width);

@@ -42,6 +42,15 @@ class NearFrame {
   std::unordered_set<std::int64_t> cells_;
 };
 
+// Numbers that halve evenly, so that points lie between others and neighbouring triangles share
+// those of their edges; up to a quarter below what the spacing asks for.
+int CellsNear(double wanted) {
+  return std::clamp(4 * int(std::ceil(wanted / 4 - 0.25)), 4, kMaxCells);
+}
+int CellsFar(double wanted) {
+  return std::min(1 << int(std::ceil(std::max(std::log2(wanted) - 0.25, 0.0))), kMaxCells);
+}
+
 // Of a point in a triangle's list: row by row, each row one shorter than the last.
 int IndexInLattice(int cells, int column, int row) {
   return row * (cells + 1) - row * (row - 1) / 2 + column;
@@ -111,8 +120,7 @@ FaceLattice::FaceLattice(const TriangleMesh& face, const TriangleMesh& frame, do
     const bool near = near_frame.Contains((corners[0] + corners[1] + corners[2]) / 3) ||
                       near_frame.Contains(corners[0]) || near_frame.Contains(corners[1]) ||
                       near_frame.Contains(corners[2]);
-    const double spacing = near ? near_mm : far_mm;
-    const int cells = std::clamp(int(std::ceil(side / spacing)), 1, kMaxCells);
+    const int cells = near ? CellsNear(side / near_mm) : CellsFar(side / far_mm);
     lattices_.push_back({std::uint32_t(corners_.size()), std::uint16_t(cells), false});
     corners_.resize(corners_.size() + std::size_t((cells + 1) * (cells + 2) / 2));
     const auto corner = [&](int i, int j) -> std::uint32_t& {

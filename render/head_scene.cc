@@ -15,11 +15,9 @@ constexpr int kFrameDirections = 128;
 // The paper's feathering: share of the way from the front to the ear.
 constexpr double kFadeStart = 0.55, kFadeEnd = 0.97;
 
-FrameSurface JoinParts(const Eyewear& eyewear, const Environment& environment) {
+FrameSurface JoinParts(const Eyewear& eyewear) {
   FrameSurface out;
   out.frame_from_head = eyewear.head_from_frame.inverse();
-  std::vector<float> lobes;
-  bool textured = false;
   for (const FramePart& part : eyewear.frame.parts) {
     if (part.kind == FramePartKind::kDemoLens || part.mesh.empty()) continue;
     TriangleMesh mesh = part.mesh;
@@ -31,18 +29,7 @@ FrameSurface JoinParts(const Eyewear& eyewear, const Environment& environment) {
                            std::uint16_t(out.materials.size()));
     out.materials.push_back(part.material);
     out.fades.push_back(part.kind == FramePartKind::kTemple);
-    const auto known = std::find(lobes.begin(), lobes.end(), part.material.shininess);
-    out.gloss_of.push_back(std::uint16_t(known - lobes.begin()));
-    if (known == lobes.end()) {
-      lobes.push_back(part.material.shininess);
-      out.gloss.push_back(BlurredEnvironment::ForPhong(environment, part.material.shininess));
-    }
-    textured = textured || (part.material.pbr != nullptr &&
-                            part.material.pbr->metallic_roughness_texture != nullptr);
     Append(out.mesh, mesh);
-  }
-  for (double exponent = 1; exponent <= (textured ? 1024 : 64); exponent *= 4) {
-    out.lobes.push_back(BlurredEnvironment::ForPhong(environment, exponent));
   }
   for (const Eigen::Vector3d& n : out.mesh.normals) out.normals.push_back(n.cast<float>());
   for (const Eigen::Vector3i& t : out.mesh.triangles) {
@@ -50,8 +37,8 @@ FrameSurface JoinParts(const Eyewear& eyewear, const Environment& environment) {
     for (int k = 0; k < 3; ++k) {
       const std::size_t a = std::size_t(t[k]), b = std::size_t(t[(k + 1) % 3]);
       const double side = (out.mesh.positions[a] - out.mesh.positions[b]).norm();
-      if (side > 0)
-        most = std::max(most, (out.mesh.normals[a] - out.mesh.normals[b]).norm() / side);
+      if (side == 0) continue;
+      most = std::max(most, (out.mesh.normals[a] - out.mesh.normals[b]).norm() / side);
     }
     out.curvature.push_back(float(most));
   }
@@ -60,6 +47,25 @@ FrameSurface JoinParts(const Eyewear& eyewear, const Environment& environment) {
   out.fade_start_z = kFadeStart * ear_z;
   out.fade_end_z = kFadeEnd * ear_z;
   return out;
+}
+
+// The environment under the lobes that the frame's materials have.
+void BlurForGloss(const Environment& environment, FrameSurface& frame) {
+  std::vector<float> known;
+  bool textured = false;
+  for (const FrameMaterial& material : frame.materials) {
+    const auto found = std::find(known.begin(), known.end(), material.shininess);
+    frame.gloss_of.push_back(std::uint16_t(found - known.begin()));
+    if (found == known.end()) {
+      known.push_back(material.shininess);
+      frame.gloss.push_back(BlurredEnvironment::ForPhong(environment, material.shininess));
+    }
+    textured = textured ||
+               (material.pbr != nullptr && material.pbr->metallic_roughness_texture != nullptr);
+  }
+  for (double exponent = 1; exponent <= (textured ? 1024 : 64); exponent *= 4) {
+    frame.lobes.push_back(BlurredEnvironment::ForPhong(environment, exponent));
+  }
 }
 
 // Greatest distance from the contour, inward, of a point of the frame that lies inside the glass.
@@ -143,10 +149,16 @@ Result<HeadScene> HeadScene::Build(const Eyewear& eyewear, const TriangleMesh& f
     solids[k].emplace(cuts[k]->lens.lens(), cuts[k]->contour_mm,
                       eyewear.head_from_frame * cuts[k]->frame_from_lens);
   };
-  tbb::parallel_invoke([&] { frame = JoinParts(eyewear, environment); }, [&] { solid(0); },
-                       [&] { solid(1); },
-                       [&] { cells = BlurredEnvironment::ForCells(environment, directions); });
-  LG_ASSIGN(EmbreeScene scene, EmbreeScene::Build(smooth_face, occluder, frame.mesh));
+  std::optional<Result<EmbreeScene>> built;
+  const auto join = [&] {
+    frame = JoinParts(eyewear);
+    tbb::parallel_invoke([&] { built = EmbreeScene::Build(smooth_face, occluder, frame.mesh); },
+                         [&] { BlurForGloss(environment, frame); });
+  };
+  tbb::parallel_invoke(
+      join, [&] { solid(0); }, [&] { solid(1); },
+      [&] { cells = BlurredEnvironment::ForCells(environment, directions); });
+  LG_ASSIGN(EmbreeScene scene, *std::move(built));
 
   std::vector<LensSolid> lenses;
   std::vector<LensLook> looks;
