@@ -128,10 +128,12 @@ Pad PadMesh(const RimShape& rim, const RimParameters& rim_parameters, const PadP
   shape.dome_rings = 8;
   shape.dome_start = shape.dome_end = 0.4;
   Pad result;
-  result.pad = SweepBar(map, shape);
-  for (std::size_t i = 0; i < result.pad.positions.size(); ++i) {
-    if (result.pad.normals[i].dot(face) > 0.7) result.contacts.push_back(result.pad.positions[i]);
+  const TriangleMesh fine = SweepBar(map, shape);
+  for (std::size_t i = 0; i < fine.positions.size(); ++i) {
+    if (fine.normals[i].dot(face) > 0.7) result.contacts.push_back(fine.positions[i]);
   }
+  shape.fineness = fineness;
+  result.pad = SweepBar(map, shape);
 
   if (pad.arm_mm > 0) {
     const double s = rim.ParameterAtAngle(165);

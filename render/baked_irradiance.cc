@@ -19,7 +19,7 @@ namespace {
 constexpr float kOffSkin_mm = 0.05f;
 // Vertices in the middle take the mean where the two beside them see the same in all but this share
 // of the hemisphere's directions.
-constexpr float kMostDifference = 0.2f;
+constexpr float kMostDifference = 0.3f;
 
 // What a vertex sees of the directions: one bit each for what ends in the open, and on the head.
 class Views {

@@ -42,13 +42,11 @@ class NearFrame {
   std::unordered_set<std::int64_t> cells_;
 };
 
-// Numbers that halve evenly, so that points lie between others and neighbouring triangles share
-// those of their edges; up to a quarter below what the spacing asks for.
-int CellsNear(double wanted) {
-  return std::clamp(4 * int(std::ceil(wanted / 4 - 0.25)), 4, kMaxCells);
-}
+// Cells along a side, of numbers that halve evenly, so that points lie between others and
+// neighbouring triangles share those of their edges.
+int CellsNear(double wanted) { return std::clamp(4 * int(std::ceil(wanted / 4)), 4, kMaxCells); }
 int CellsFar(double wanted) {
-  return std::min(1 << int(std::ceil(std::max(std::log2(wanted) - 0.25, 0.0))), kMaxCells);
+  return std::min(1 << int(std::ceil(std::log2(std::max(wanted, 1.0)))), kMaxCells);
 }
 
 // Of a point in a triangle's list: row by row, each row one shorter than the last.

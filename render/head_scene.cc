@@ -20,16 +20,29 @@ FrameSurface JoinParts(const Eyewear& eyewear) {
   out.frame_from_head = eyewear.head_from_frame.inverse();
   for (const FramePart& part : eyewear.frame.parts) {
     if (part.kind == FramePartKind::kDemoLens || part.mesh.empty()) continue;
-    TriangleMesh mesh = part.mesh;
-    mesh.uvs.resize(mesh.positions.size(), Eigen::Vector2f::Zero());
-    if (mesh.normals.size() != mesh.positions.size()) ComputeVertexNormals(mesh);
-    for (Eigen::Vector3d& p : mesh.positions) p = eyewear.head_from_frame * p;
-    for (Eigen::Vector3d& n : mesh.normals) n = eyewear.head_from_frame.rotation() * n;
+    const TriangleMesh& mesh = part.mesh;
+    const Eigen::Vector3i first = Eigen::Vector3i::Constant(int(out.mesh.positions.size()));
+    for (const Eigen::Vector3d& p : mesh.positions) {
+      out.mesh.positions.push_back(eyewear.head_from_frame * p);
+    }
+    for (const Eigen::Vector3i& t : mesh.triangles) out.mesh.triangles.push_back(t + first);
+    std::vector<Eigen::Vector3d> computed;
+    if (mesh.normals.size() != mesh.positions.size()) {
+      TriangleMesh bare;
+      bare.positions = mesh.positions;
+      bare.triangles = mesh.triangles;
+      ComputeVertexNormals(bare);
+      computed = std::move(bare.normals);
+    }
+    for (const Eigen::Vector3d& n : computed.empty() ? mesh.normals : computed) {
+      out.mesh.normals.push_back(eyewear.head_from_frame.rotation() * n);
+    }
+    out.mesh.uvs.insert(out.mesh.uvs.end(), mesh.uvs.begin(), mesh.uvs.end());
+    out.mesh.uvs.resize(out.mesh.positions.size(), Eigen::Vector2f::Zero());
     out.material_of.insert(out.material_of.end(), mesh.triangles.size(),
                            std::uint16_t(out.materials.size()));
     out.materials.push_back(part.material);
     out.fades.push_back(part.kind == FramePartKind::kTemple);
-    Append(out.mesh, mesh);
   }
   for (const Eigen::Vector3d& n : out.mesh.normals) out.normals.push_back(n.cast<float>());
   for (const Eigen::Vector3i& t : out.mesh.triangles) {

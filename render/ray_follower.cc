@@ -268,7 +268,7 @@ Eigen::Vector3f RayFollower::Inside(std::size_t lens, const Ray& ray, double wei
       const Eigen::Vector3d point = ray.origin + double(rim.distance) * ray.direction;
       return looks_[lens]
           .tint.Between(ray.origin, point)
-          .cwiseProduct(Frame(rim, at, direction, GlossEnd::InGroove()));
+          .cwiseProduct(Frame(rim, at, direction, EndAt(rim)));
     }
   }
   const Eigen::Vector3f tint = looks_[lens].tint.Between(ray.origin, hit->point);

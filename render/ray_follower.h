@@ -19,10 +19,6 @@ namespace lorgnette {
 struct GlossEnd {
   bool away = false;
   Eigen::Vector3f radiance{0, 0, 0};  // of skin, or of the frame itself
-
-  // Of a point of the frame that is met from inside a lens: it lies in the groove, against the
-  // glass, where there is nothing to mirror.
-  static GlossEnd InGroove() { return {}; }
 };
 
 // What one pixel's rays share.
@@ -104,7 +100,9 @@ class RayFollower {
   };
   std::optional<GlossRay> GlossOf(const SceneHit& hit, const Eigen::Vector3f& point,
                                   const Eigen::Vector3f& direction) const;
-  GlossEnd EndAt(const SceneHit& hit) const;  // of a ray that GlossOf gave
+  // Of a ray that GlossOf gave; and of what is mirrored at a point of the frame that is met from
+  // inside a lens: it lies in the groove and sees no more than the groove.
+  GlossEnd EndAt(const SceneHit& hit) const;
   // How far the frame's normal turns over a pixel there, radians.
   float TurnAt(const SceneHit& hit) const {
     return head_.frame.curvature[hit.triangle] * pixel_mm_;

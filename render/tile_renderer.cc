@@ -460,7 +460,7 @@ void TileRenderer::TraceLens(std::size_t lens, Batch& batch, std::vector<CameraS
         const Eigen::Vector3f point = batch.rim.origins[j] + hit.distance * in_glass;
         sample.kind = CameraSample::Kind::kFrame;
         sample.inserted +=
-            r.entered.cwiseProduct(follower_.Frame(hit, point, in_glass, GlossEnd::InGroove()));
+            r.entered.cwiseProduct(follower_.Frame(hit, point, in_glass, follower_.EndAt(hit)));
         continue;
       }
     }
@@ -540,7 +540,7 @@ void TileRenderer::TraceLens(std::size_t lens, Batch& batch, std::vector<CameraS
         const Eigen::Vector3f& direction = batch.rim.directions[at];
         const Eigen::Vector3f point = batch.rim.origins[at] + hit.distance * direction;
         sample.inserted +=
-            weight.cwiseProduct(follower_.Frame(hit, point, direction, GlossEnd::InGroove()));
+            weight.cwiseProduct(follower_.Frame(hit, point, direction, follower_.EndAt(hit)));
         continue;
       }
     }
