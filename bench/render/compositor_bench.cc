@@ -9,6 +9,7 @@
 
 #include "base/units.h"
 #include "bench/calibration.h"
+#include "geometry/assemble.h"
 #include "geometry/eyewear.h"
 #include "geometry/frame_io.h"
 #include "optics/certify.h"
@@ -139,6 +140,21 @@ const Setup& TheSetup() {
   return setup;
 }
 
+// The same with a frame as it is worn and lenses cut to it: some 25,000 triangles, pads, temples.
+const Setup& Worn() {
+  static const Setup setup = [] {
+    Setup worn(720);
+    Fit fit;
+    fit.frame = *LoadFrame("panto");
+    fit.head_from_frame = Eigen::Translation3d(0, 0, 14);
+    Prescription rx;
+    for (EyePrescription* eye : {&rx.right, &rx.left}) eye->sphere = Diopters(-6);
+    worn.eyewear = *MakeEyewear(fit, rx, {-32, 0, 0}, {32, 0, 0});
+    return worn;
+  }();
+  return setup;
+}
+
 void Render(benchmark::State& state, const CompositorOptions& options,
             const Setup& setup = TheSetup()) {
   const Compositor compositor =
@@ -169,41 +185,41 @@ void Render(benchmark::State& state, const CompositorOptions& options,
   }
 }
 
-void BM_Full(benchmark::State& state) { Render(state, CompositorOptions{}); }
-BENCHMARK(BM_Full)
-    ->Name("render/compositor/full_2x2")
-    ->Unit(benchmark::kMillisecond)
-    ->UseRealTime()
-    ->MeasureProcessCPUTime();
-
-void BM_Adaptive(benchmark::State& state) {
+CompositorOptions Adaptive() {
   CompositorOptions options;
   options.adaptive = true;
-  Render(state, options);
+  return options;
 }
-BENCHMARK(BM_Adaptive)
-    ->Name("render/compositor/adaptive")
-    ->Unit(benchmark::kMillisecond)
-    ->UseRealTime()
-    ->MeasureProcessCPUTime();
-
-void BM_Paper(benchmark::State& state) {
+CompositorOptions Paper() {
   CompositorOptions options;
   options.shadow = ShadowMode::kPaper;
-  Render(state, options);
+  return options;
 }
-BENCHMARK(BM_Paper)
-    ->Name("render/compositor/paper_160")
-    ->Unit(benchmark::kMillisecond)
-    ->UseRealTime()
-    ->MeasureProcessCPUTime();
+
+// Wall and processor time in ms.
+void Timed(benchmark::internal::Benchmark* benchmark) {
+  benchmark->Unit(benchmark::kMillisecond)->UseRealTime()->MeasureProcessCPUTime();
+}
+
+void BM_Full(benchmark::State& state) { Render(state, CompositorOptions{}); }
+BENCHMARK(BM_Full)->Name("render/compositor/full_2x2")->Apply(Timed);
+void BM_FullWorn(benchmark::State& state) { Render(state, CompositorOptions{}, Worn()); }
+BENCHMARK(BM_FullWorn)->Name("render/compositor/full_2x2/panto")->Apply(Timed);
+
+void BM_Adaptive(benchmark::State& state) { Render(state, Adaptive()); }
+BENCHMARK(BM_Adaptive)->Name("render/compositor/adaptive")->Apply(Timed);
+void BM_AdaptiveWorn(benchmark::State& state) { Render(state, Adaptive(), Worn()); }
+BENCHMARK(BM_AdaptiveWorn)->Name("render/compositor/adaptive/panto")->Apply(Timed);
+
+void BM_Paper(benchmark::State& state) { Render(state, Paper()); }
+BENCHMARK(BM_Paper)->Name("render/compositor/paper_160")->Apply(Timed);
+void BM_PaperWorn(benchmark::State& state) { Render(state, Paper(), Worn()); }
+BENCHMARK(BM_PaperWorn)->Name("render/compositor/paper_160/panto")->Apply(Timed);
 
 // Growth with the pixels of the frame.
 void BM_Growth(benchmark::State& state) {
   const Setup setup(int(state.range(0)));
-  CompositorOptions options;
-  options.adaptive = true;
-  Render(state, options, setup);
+  Render(state, Adaptive(), setup);
   state.SetComplexityN(std::int64_t(setup.input.width) * setup.input.height);
 }
 BENCHMARK(BM_Growth)
@@ -211,9 +227,7 @@ BENCHMARK(BM_Growth)
     ->Arg(360)
     ->Arg(720)
     ->Arg(1440)
-    ->Unit(benchmark::kMillisecond)
-    ->UseRealTime()
-    ->MeasureProcessCPUTime()
+    ->Apply(Timed)
     ->Complexity(benchmark::oN);
 
 // Scene, trees and baked light, by the directions baked for a point of the face.
@@ -233,20 +247,11 @@ BENCHMARK(BM_Create)
     ->Arg(512)
     ->Arg(1024)
     ->Arg(2048)
-    ->Unit(benchmark::kMillisecond)
-    ->UseRealTime()
-    ->MeasureProcessCPUTime()
+    ->Apply(Timed)
     ->Complexity(benchmark::oN);
 
-// The same with a frame as it is worn: tens of thousands of triangles.
 void BM_CreateWorn(benchmark::State& state) {
-  Setup setup(720);
-  auto frame = LoadFrame("panto");
-  if (!frame) {
-    state.SkipWithError(frame.error().message.c_str());
-    return;
-  }
-  setup.eyewear.frame = *std::move(frame);
+  const Setup& setup = Worn();
   std::size_t triangles = 0;
   for (const FramePart& part : setup.eyewear.frame.parts) triangles += part.mesh.triangles.size();
   for (auto _ : state) {
@@ -255,11 +260,7 @@ void BM_CreateWorn(benchmark::State& state) {
   }
   state.counters["frame_triangles"] = double(triangles);
 }
-BENCHMARK(BM_CreateWorn)
-    ->Name("render/compositor/create_and_bake/panto")
-    ->Unit(benchmark::kMillisecond)
-    ->UseRealTime()
-    ->MeasureProcessCPUTime();
+BENCHMARK(BM_CreateWorn)->Name("render/compositor/create_and_bake/panto")->Apply(Timed);
 
 }  // namespace
 }  // namespace lorgnette
