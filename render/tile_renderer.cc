@@ -624,8 +624,8 @@ void TileRenderer::TraceLens(std::size_t lens, Batch& batch, std::vector<CameraS
 void TileRenderer::Trace(std::vector<CameraSample>& samples, std::uint8_t content,
                          std::vector<PixelState>& pixels) const {
   thread_local Batch batch;
-  // No ray of such a tile meets the frame.
-  const RaySet set = content == kTileShadow ? RaySet::kHead : RaySet::kAll;
+  // A straight ray meets the frame in its tiles only.
+  const RaySet set = content & kTileFrame ? RaySet::kAll : RaySet::kHead;
   TracePrimary(set, batch, samples);
   batch.lens_of.assign(samples.size(), 0);
   const std::uint8_t lens_bits[2] = {kTileRightLens, kTileLeftLens};
