@@ -24,8 +24,9 @@ void AddEffectOptions(CLI::App& command, EffectOptions& options) {
                   "... and that change it by less, code values of 255")
       ->capture_default_str();
   command
-      .add_option("--coating", options.coating,
-                  "none, single, v, ar, mirror, mirror-blue, -green, -gold, -red")
+      .add_option(
+          "--coating", options.coating,
+          "none, single, v, ar, mirror, mirror-blue, -green, -gold, -red; FRONT/BACK: mirror/none")
       ->capture_default_str();
   command
       .add_option("--tint", options.tint,

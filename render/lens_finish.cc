@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <charconv>
 #include <cmath>
+#include <iterator>
 #include <utility>
 
 #include "optics/trace.h"
@@ -87,16 +88,27 @@ Status SetCoating(std::string_view name, LensFinish& finish) {
                {"mirror-green", CoatKind::kBroadband, MirrorCoat::kGreen},
                {"mirror-gold", CoatKind::kBroadband, MirrorCoat::kGold},
                {"mirror-red", CoatKind::kBroadband, MirrorCoat::kRed}};
-  for (const auto& entry : known) {
-    if (entry.name != name) continue;
-    finish.front_coat = finish.back_coat = entry.coat;
-    finish.mirror = entry.mirror;
-    return {};
+  const auto find = [&](std::string_view wanted) {
+    return std::find_if(std::begin(known), std::end(known),
+                        [&](const auto& entry) { return entry.name == wanted; });
+  };
+  const std::size_t slash = name.find('/');
+  const auto front = find(name.substr(0, slash));
+  const auto back = slash == std::string_view::npos ? front : find(name.substr(slash + 1));
+  if (front == std::end(known) || back == std::end(known)) {
+    return UsageError(
+        fmt::format("--coating: got `{}`, want none, single, v, ar, mirror, mirror-blue, "
+                    "mirror-green, mirror-gold or mirror-red, or FRONT/BACK",
+                    name));
   }
-  return UsageError(
-      fmt::format("--coating: got `{}`, want none, single, v, ar, mirror, mirror-blue, "
-                  "mirror-green, mirror-gold or mirror-red",
-                  name));
+  if (slash != std::string_view::npos && back->mirror != MirrorCoat::kNone) {
+    return UsageError(
+        fmt::format("--coating: got `{}`, want none, single, v or ar on the back", name));
+  }
+  finish.front_coat = front->coat;
+  finish.back_coat = back->coat;
+  finish.mirror = front->mirror;
+  return {};
 }
 
 Status SetTint(std::string_view text, LensFinish& finish) {

@@ -45,7 +45,8 @@ struct LensFinish {
 };
 
 // `none`, `single`, `v`, `ar` (broadband) on both surfaces; `mirror` (silver), `mirror-blue`,
-// `-green`, `-gold`, `-red` with `ar` on the back.
+// `-green`, `-gold`, `-red` with `ar` on the back. FRONT/BACK: one on each (`mirror/none`), mirrors
+// on the front only.
 Status SetCoating(std::string_view name, LensFinish& finish);
 // COLOUR:PERCENT[:dip|solid|gradient]: grey, brown, green, blue, rose or yellow glass that passes
 // that much of the light (`brown:40:gradient`); `none`.

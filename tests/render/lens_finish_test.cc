@@ -107,6 +107,15 @@ TEST(LensFinish, SaysWhatItCannotRead) {
     EXPECT_NE(status.error().message.find(text), std::string::npos);
   }
   EXPECT_FALSE(SetCoating("gold", finish));
+  EXPECT_FALSE(SetCoating("ar/mirror", finish));
+  EXPECT_FALSE(SetCoating("ar/", finish));
+  ASSERT_TRUE(SetCoating("mirror-gold/none", finish));
+  EXPECT_EQ(finish.mirror, MirrorCoat::kGold);
+  EXPECT_EQ(finish.back_coat, CoatKind::kNone);
+  ASSERT_TRUE(SetCoating("single/ar", finish));
+  EXPECT_EQ(finish.mirror, MirrorCoat::kNone);
+  EXPECT_EQ(finish.front_coat, CoatKind::kSingle);
+  EXPECT_EQ(finish.back_coat, CoatKind::kBroadband);
   EXPECT_FALSE(SetEdge("rough", finish));
   EXPECT_TRUE(SetTint("none", finish));
 }
