@@ -62,6 +62,10 @@ class RayFollower {
     SolidHit hit;
   };
   std::optional<Entry> FirstGlass(const Ray& ray) const;
+  // Whether each wavelength goes its own way through a lens.
+  bool parts_colours(std::size_t lens) const {
+    return effects_.lens[lens][Effect::kDispersion] && effects_.lens[lens][Effect::kRefraction];
+  }
   // Whether light can pass through both lenses on its way to this camera.
   bool lenses_overlap() const { return lenses_overlap_; }
 

@@ -7,30 +7,13 @@
 #include <memory>
 #include <vector>
 
+#include "render/camera_sample.h"
 #include "render/ray_follower.h"
 #include "render/tile_mask.h"
 
 namespace lorgnette {
 
-struct RayBundle;
-
-// One camera ray, and what it brought.
-struct CameraSample {
-  float x = 0, y = 0;       // pixel position
-  std::uint16_t pixel = 0;  // index into the tile's PixelStates
-
-  enum class Kind : std::uint8_t {
-    kBackground,
-    kHead,
-    kFrame,
-    kLensToHead,        // through both surfaces ...
-    kLensToBackground,  // ... past the head
-    kLensElsewhere      // any other way through glass
-  };
-  Kind kind = Kind::kBackground;
-  Eigen::Vector3f inserted{0, 0, 0};  // light of lens and frame
-  Eigen::Vector3f direct{1, 1, 1};    // factor of the input pixel
-};
+struct TileBatch;
 
 class TileRenderer {
  public:
@@ -43,26 +26,12 @@ class TileRenderer {
              std::vector<PixelState>& pixels) const;
 
  private:
-  struct Regular;
-  struct Batch;
-  void Share(std::size_t lens, float enter, float leave, const Eigen::Vector3f& direction,
-             Regular& ray) const;
-  void TracePrimary(RaySet set, Batch& batch, std::vector<CameraSample>& samples) const;
-  void TraceGloss(Batch& batch, const std::vector<CameraSample>& samples,
+  void TracePrimary(RaySet set, TileBatch& batch, std::vector<CameraSample>& samples) const;
+  void TraceGloss(TileBatch& batch, const std::vector<CameraSample>& samples,
                   std::vector<PixelState>& pixels) const;
-  void TraceGloss(Batch& batch, const RayBundle& rays) const;
-  void TraceLens(std::size_t lens, Batch& batch, std::vector<CameraSample>& samples,
-                 std::vector<PixelState>& pixels) const;
-  // The main rays whose colours part (batch.parted): each wavelength its own way. What is mirrored
-  // keeps the d line's way.
-  void TraceColours(std::size_t lens, Batch& batch, std::vector<CameraSample>& samples,
+  void TraceExactly(std::size_t sample, const TileBatch& batch, std::vector<CameraSample>& samples,
                     std::vector<PixelState>& pixels) const;
-  bool PartsColours(std::size_t lens) const;
-  // How far apart the ends of a main ray's colours may lie, pixels.
-  float Parting(std::size_t lens, const Batch& batch, std::size_t main) const;
-  void TraceExactly(std::size_t sample, const Batch& batch, std::vector<CameraSample>& samples,
-                    std::vector<PixelState>& pixels) const;
-  void Direct(std::size_t sample, const Batch& batch, std::vector<CameraSample>& samples,
+  void Direct(std::size_t sample, const TileBatch& batch, std::vector<CameraSample>& samples,
               std::vector<PixelState>& pixels) const;
 
   const HeadScene& head_;

@@ -175,6 +175,30 @@ TEST(BakedShadow, KnowsItsUntouchedTriangles) {
   }
 }
 
+// Points that take the mean of two others are close to what they would be if traced.
+TEST(BakedShadow, LeavesOutPointsBetweenThoseThatSeeTheSame) {
+  TriangleMesh face = test::Wall(60, 0, 6);
+  const TriangleMesh disc = Disc(6, 8);
+  const EmbreeScene scene = *EmbreeScene::Build(face, TriangleMesh{}, disc);
+  ShadowOptions options, all;
+  all.most_difference = -1;
+  const BakedShadow some = BakedShadow::Bake(scene, face, disc, options);
+  const BakedShadow every = BakedShadow::Bake(scene, face, disc, all);
+  EXPECT_EQ(some.point_count(), every.point_count());
+  EXPECT_LT(double(some.touched_count()), 0.8 * double(every.touched_count()));
+  const HeadLight light = LightAt(
+      SphereDirections(1024), BlurredEnvironment::ForCells(Environment::Constant({1, 1, 1}), 1024),
+      Eigen::Matrix3f::Identity(), 1);
+  const auto ratios = some.Relight(light), traced = every.Relight(light);
+  double squares = 0;
+  for (std::size_t i = 0; i < ratios.size(); ++i) {
+    const double off = double(ratios[i].x() - traced[i].x());
+    EXPECT_LT(std::abs(off), 0.04);
+    squares += off * off;
+  }
+  EXPECT_LT(std::sqrt(squares / double(ratios.size())), 0.006);
+}
+
 // From z = -2 to 2.
 TriangleMesh ClosedBox(double side_mm) {
   TriangleMesh box = test::Wall(side_mm, 2, 1);  // lid, floor and four sides of a closed box
