@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <bit>
+#include <cmath>
 #include <limits>
 #include <numeric>
 
@@ -14,6 +15,23 @@ namespace lorgnette {
 namespace {
 
 constexpr int kOpenDirections = 256;
+
+// Enough of the frame's vertices to tell distances to a few mm.
+std::vector<Eigen::Vector3f> SomeVertices(const TriangleMesh& frame) {
+  constexpr std::size_t kVertices = 512;
+  std::vector<Eigen::Vector3f> some;
+  const std::size_t step = std::max<std::size_t>(1, frame.positions.size() / kVertices);
+  for (std::size_t i = 0; i < frame.positions.size(); i += step) {
+    some.push_back(frame.positions[i].cast<float>());
+  }
+  return some;
+}
+
+float DistanceToNearest(const std::vector<Eigen::Vector3f>& points, const Eigen::Vector3f& from) {
+  float nearest = std::numeric_limits<float>::max();
+  for (const Eigen::Vector3f& p : points) nearest = std::min(nearest, (p - from).squaredNorm());
+  return std::max(std::sqrt(nearest), 1.0f);
+}
 
 }  // namespace
 
@@ -31,11 +49,12 @@ BakedShadow BakedShadow::Bake(const EmbreeScene& scene, const TriangleMesh& face
 
   baked.BakeOpenLight(scene, face, options);
 
-  const std::vector<Eigen::Vector3f> sphere = SphereDirections(options.directions);
+  baked.sphere_ = SphereDirections(options.directions);
+  baked.sees_face_ = options.sees_face;
   std::vector<Lists> lists(points.size());
   const auto trace = [&](const std::vector<std::uint32_t>& which) {
     tbb::parallel_for(std::size_t(0), which.size(), [&](std::size_t k) {
-      lists[which[k]] = ListBlocked(scene, sphere, points[which[k]], options.sees_face);
+      lists[which[k]] = ListBlocked(scene, baked.sphere_, points[which[k]], options.sees_face);
     });
   };
   // A point between two others is traced where they do not see about the same of the frame.
@@ -66,20 +85,17 @@ BakedShadow BakedShadow::Bake(const EmbreeScene& scene, const TriangleMesh& face
   }
 
   std::vector<bool> is_touched(points.size(), false);
-  std::uint32_t end = 0;
-  for (std::size_t i = 0; i < points.size(); ++i) {
+  for (std::uint32_t i = 0; i < points.size(); ++i) {
     if (lists[i].blocked.empty()) continue;
     is_touched[i] = true;
-    const std::uint32_t first = end;
-    end += std::uint32_t(lists[i].blocked.size());
-    baked.touched_.push_back({std::uint32_t(i), first, first + lists[i].seen, end,
-                              face.triangles[points[i].triangle], points[i].u, points[i].v,
-                              lists[i].buried, std::uint32_t(i)});
+    const LatticePoint& at = points[i];
+    baked.touched_.push_back(
+        {i, face.triangles[at.triangle], at.u, at.v, i, at.position, 0, std::move(lists[i])});
   }
-  baked.blocked_.resize(end);
+  const std::vector<Eigen::Vector3f> some = SomeVertices(frame);
   tbb::parallel_for(std::size_t(0), baked.touched_.size(), [&](std::size_t k) {
-    const Touched& point = baked.touched_[k];
-    std::ranges::copy(lists[point.point].blocked, baked.blocked_.begin() + point.first_blocked);
+    Touched& point = baked.touched_[k];
+    point.to_frame_mm = DistanceToNearest(some, point.baked_at);
   });
   baked.FindNeighbours();
   for (const FaceLattice::Between& b : baked.means_) {
@@ -151,13 +167,47 @@ float BakedShadow::Lists::DifferenceTo(const Lists& other) const {
   return float(differ) / (32 * float(bits[0].size()));  // half of the directions are above
 }
 
+std::size_t BakedShadow::Follow(const EmbreeScene& scene,
+                                const std::vector<Eigen::Vector3f>& vertices, std::size_t most) {
+  struct Moved {
+    float weight;
+    std::uint32_t touched;
+    Eigen::Vector3f to;
+  };
+  std::vector<Moved> moved;
+  for (std::uint32_t i = 0; i < touched_.size(); ++i) {
+    const Touched& point = touched_[i];
+    const float w[3] = {1 - point.u - point.v, point.u, point.v};
+    Eigen::Vector3f to = Eigen::Vector3f::Zero();
+    for (int k = 0; k < 3; ++k) to += w[k] * vertices[std::size_t(point.vertices[k])];
+    const float by = (to - point.baked_at).norm();
+    if (by < std::max(kMoved_mm, kMovedShare * point.to_frame_mm)) continue;
+    moved.push_back({by / point.to_frame_mm * float(point.lists.blocked.size()), i, to});
+  }
+  if (moved.size() > most) {
+    const auto last = moved.begin() + std::ptrdiff_t(most);
+    std::nth_element(moved.begin(), last, moved.end(), [](const Moved& a, const Moved& b) {
+      return a.weight != b.weight ? a.weight > b.weight : a.touched < b.touched;
+    });
+    moved.erase(last, moved.end());
+  }
+  tbb::parallel_for(std::size_t(0), moved.size(), [&](std::size_t k) {
+    Touched& point = touched_[moved[k].touched];
+    LatticePoint at = lattice_.points()[point.point];
+    at.position = point.baked_at = moved[k].to;
+    point.lists = ListBlocked(scene, sphere_, at, sees_face_);
+  });
+  if (!moved.empty()) FindNeighbours();
+  return moved.size();
+}
+
 void BakedShadow::FindNeighbours() {
   const std::vector<LatticePoint>& points = lattice_.points();
   for (Touched& point : touched_) {
-    if (!point.buried) continue;
+    if (!point.lists.buried) continue;
     float nearest = std::numeric_limits<float>::infinity();
     for (const Touched& other : touched_) {
-      if (other.buried) continue;
+      if (other.lists.buried) continue;
       const float distance =
           (points[other.point].position - points[point.point].position).squaredNorm();
       if (distance >= nearest) continue;
@@ -241,22 +291,23 @@ std::vector<Eigen::Vector3f> BakedShadow::Relight(const HeadLight& light) const 
   // Four floats a cell: one load and one multiplication for the three channels.
   std::vector<Eigen::Vector4f> cells(light.cells.size());
   for (std::size_t i = 0; i < cells.size(); ++i) cells[i] << light.cells[i], 0;
-  const auto lost = [&](std::uint32_t first, std::uint32_t end) -> Eigen::Vector3f {
+  const auto lost = [&](const Blocked* k, const Blocked* end) -> Eigen::Vector3f {
     Eigen::Vector4f even = Eigen::Vector4f::Zero(), odd = Eigen::Vector4f::Zero();
-    std::uint32_t k = first;
-    for (; k + 1 < end; k += 2) {
-      even += float(blocked_[k].cosine) * cells[blocked_[k].direction];
-      odd += float(blocked_[k + 1].cosine) * cells[blocked_[k + 1].direction];
+    for (; end - k > 1; k += 2) {
+      even += float(k[0].cosine) * cells[k[0].direction];
+      odd += float(k[1].cosine) * cells[k[1].direction];
     }
-    if (k < end) even += float(blocked_[k].cosine) * cells[blocked_[k].direction];
+    if (k < end) even += float(k->cosine) * cells[k->direction];
     return (even + odd).head<3>() / kCosineUnits;
   };
   std::vector<Eigen::Vector3f> ratios(lattice_.points().size(), Eigen::Vector3f::Ones());
   tbb::parallel_for(std::size_t(0), touched_.size(), [&](std::size_t i) {
     const Touched& point = touched_[i];
-    if (point.buried) return;
-    const Eigen::Vector3f lost_seen = lost(point.first_blocked, point.first_hidden);
-    const Eigen::Vector3f lost_hidden = lost(point.first_hidden, point.end_blocked);
+    if (point.lists.buried) return;
+    const Blocked* const first = point.lists.blocked.data();
+    const Eigen::Vector3f lost_seen = lost(first, first + point.lists.seen);
+    const Eigen::Vector3f lost_hidden =
+        lost(first + point.lists.seen, first + point.lists.blocked.size());
     const float w[3] = {1 - point.u - point.v, point.u, point.v};
     Eigen::Vector3f seen = Eigen::Vector3f::Zero(), all = Eigen::Vector3f::Zero();
     float share = 0;
@@ -273,7 +324,7 @@ std::vector<Eigen::Vector3f> BakedShadow::Relight(const HeadLight& light) const 
     }
   });
   for (const Touched& point : touched_) {
-    if (point.buried) ratios[point.point] = ratios[point.like];
+    if (point.lists.buried) ratios[point.point] = ratios[point.like];
   }
   for (const FaceLattice::Between& b : means_) {
     ratios[b.point] = (ratios[b.one] + ratios[b.other]) / 2;

@@ -44,6 +44,7 @@ struct PixelSum {
 
 struct Compositor::Scene {
   HeadScene head;
+  bool face_has_moved = false;
 };
 
 Compositor::Compositor(std::unique_ptr<Scene> scene) : scene_(std::move(scene)) {}
@@ -54,7 +55,7 @@ Result<Compositor> Compositor::Create(const Eyewear& eyewear, const TriangleMesh
                                       const TriangleMesh& occluder, const Environment& environment,
                                       const CompositorOptions& options) {
   LG_ASSIGN(HeadScene head, HeadScene::Build(eyewear, face, occluder, environment, options));
-  return Compositor(std::make_unique<Scene>(Scene{std::move(head)}));
+  return Compositor(std::make_unique<Scene>(Scene{std::move(head), false}));
 }
 
 void Compositor::UpdateFace(const std::vector<Eigen::Vector3f>& vertices) {
@@ -62,6 +63,12 @@ void Compositor::UpdateFace(const std::vector<Eigen::Vector3f>& vertices) {
   LG_CHECK_EQ(vertices.size(), head.face_vertices.size());
   head.face_vertices = vertices;
   head.scene.MoveFace(vertices);
+  if (!head.baked_shadow) return;
+  // The first face differs from the one at rest everywhere at once.
+  const std::size_t most = scene_->face_has_moved ? std::size_t(head.options.rebaked_points)
+                                                  : head.baked_shadow->touched_count();
+  head.baked_shadow->Follow(head.scene, vertices, most);
+  scene_->face_has_moved = true;
 }
 
 void Compositor::SetCameraLook(const CameraLook& look) { scene_->head.options.camera_look = look; }

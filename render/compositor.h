@@ -38,6 +38,7 @@ struct CompositorOptions {
   int shadow_rays = 160;           // a pixel in paper mode (4 x 40 strata)
   int shadow_directions = 1024;    // of the sphere, baked; a multiple of 16
   double shadow_spacing_mm = 1.5;  // between baked points where frame and skin are close
+  int rebaked_points = 64;         // at most, each time the face moves but the first
   int samples_per_side = 2;        // 2: the paper's 2x2 samples a pixel
   bool adaptive = false;           // one sample where nothing changes
   int max_internal_bounces = 4;
@@ -89,7 +90,8 @@ class Compositor {
   Compositor(Compositor&&) noexcept;
   ~Compositor();
 
-  // Moves the face's vertices (same topology), for a frame with its own expression.
+  // Moves the face's vertices (same topology), for a frame with its own expression. Some of the
+  // baked points follow: the result depends on the faces before.
   void UpdateFace(const std::vector<Eigen::Vector3f>& vertices);
 
   // input and the result: linear light, the camera's size. Pixels where nothing is inserted are

@@ -72,6 +72,14 @@ class BakedShadow {
   static BakedShadow Bake(const EmbreeScene& scene, const TriangleMesh& face,
                           const TriangleMesh& frame, const ShadowOptions& options);
 
+  // After the face has moved: traces anew the points from which the frame looks most different,
+  // `most` at most, and only those that have moved since they were traced by kMoved_mm and by
+  // kMovedShare of their distance to the frame (half of a direction's cell). The light without
+  // glasses stays that of the face at rest. Returns how many.
+  static constexpr float kMoved_mm = 0.3f, kMovedShare = 0.05f;
+  std::size_t Follow(const EmbreeScene& scene, const std::vector<Eigen::Vector3f>& vertices,
+                     std::size_t most);
+
   std::size_t point_count() const { return lattice_.points().size(); }
   std::size_t touched_count() const { return touched_.size(); }
   // False where the frame hides nothing from any point of the triangle: its ratio is exactly 1.
@@ -90,14 +98,6 @@ class BakedShadow {
     std::uint16_t cosine;  // in units of 1 / kCosineUnits
   };
   static constexpr float kCosineUnits = 65535;
-  struct Touched {
-    std::uint32_t point;
-    std::uint32_t first_blocked, first_hidden, end_blocked;  // those that the face hides come last
-    Eigen::Vector3i vertices;                                // of its triangle
-    float u, v;
-    bool buried;
-    std::uint32_t like;  // where it is buried: the nearest point that is not, whose factor it takes
-  };
   // Light that arrives without glasses, at the vertices: it varies slowly.
   struct Open {
     Harmonics seen;   // past the face
@@ -113,6 +113,15 @@ class BakedShadow {
     std::vector<std::uint64_t> bits[2];            // of the directions in each part
     float DifferenceTo(const Lists& other) const;  // share of the hemisphere's directions
   };
+  struct Touched {
+    std::uint32_t point;
+    Eigen::Vector3i vertices;  // of its triangle
+    float u, v;
+    std::uint32_t like;  // where it is buried: the nearest point that is not, whose factor it takes
+    Eigen::Vector3f baked_at;
+    float to_frame_mm;  // nearest distance, to a few mm
+    Lists lists;
+  };
   static Lists ListBlocked(const EmbreeScene& scene, const std::vector<Eigen::Vector3f>& sphere,
                            const LatticePoint& at, bool sees_face);
   static RayPacket PacketToward(const std::vector<Eigen::Vector3f>& sphere,
@@ -126,7 +135,8 @@ class BakedShadow {
   std::vector<FaceLattice::Between> means_;  // points that take the mean of two before them
   std::vector<Open> open_;                   // one a vertex
   std::vector<Touched> touched_;
-  std::vector<Blocked> blocked_;
+  std::vector<Eigen::Vector3f> sphere_;
+  bool sees_face_ = true;
 };
 
 }  // namespace lorgnette

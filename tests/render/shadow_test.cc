@@ -199,6 +199,43 @@ TEST(BakedShadow, LeavesOutPointsBetweenThoseThatSeeTheSame) {
   EXPECT_LT(std::sqrt(squares / double(ratios.size())), 0.006);
 }
 
+// A face that rises toward the frame takes the shadow that a bake of the risen face would give it,
+// by and by where the budget is small.
+TEST(BakedShadow, FollowsAFaceThatMoves) {
+  TriangleMesh face = test::Wall(60, 0, 6);
+  const TriangleMesh disc = Disc(6, 8);
+  EmbreeScene scene = *EmbreeScene::Build(face, TriangleMesh{}, disc);
+  const HeadLight light = LightAt(
+      SphereDirections(1024), BlurredEnvironment::ForCells(Environment::Constant({1, 1, 1}), 1024),
+      Eigen::Matrix3f::Identity(), 1);
+  BakedShadow baked = BakedShadow::Bake(scene, face, disc, {});
+  const std::vector<Eigen::Vector3f> before = baked.Relight(light);
+
+  TriangleMesh risen = face;
+  std::vector<Eigen::Vector3f> vertices;
+  for (Eigen::Vector3d& p : risen.positions) {
+    p.z() += 3;
+    vertices.push_back(p.cast<float>());
+  }
+  scene.MoveFace(vertices);
+  const std::vector<Eigen::Vector3f> fresh =
+      BakedShadow::Bake(scene, risen, disc, {.most_difference = -1}).Relight(light);
+  const auto off = [&](const std::vector<Eigen::Vector3f>& ratios) {
+    double most = 0;
+    for (std::size_t i = 0; i < ratios.size(); ++i) {
+      most = std::max(most, double(std::abs(ratios[i].x() - fresh[i].x())));
+    }
+    return most;
+  };
+  EXPECT_GT(off(before), 0.1);
+  EXPECT_EQ(baked.Follow(scene, vertices, 10), 10u);
+  EXPECT_GT(off(baked.Relight(light)), 0.04);
+  std::size_t followed = 0;
+  while (const std::size_t now = baked.Follow(scene, vertices, 100)) followed += now;
+  EXPECT_GT(followed, 100u);
+  EXPECT_LT(off(baked.Relight(light)), 0.04);
+}
+
 // From z = -2 to 2.
 TriangleMesh ClosedBox(double side_mm) {
   TriangleMesh box = test::Wall(side_mm, 2, 1);  // lid, floor and four sides of a closed box
