@@ -13,8 +13,8 @@ namespace lorgnette {
 // How coarse a mesh may be.
 struct MeshFineness {
   double deviation_mm = 0.015;  // of a facet from the grid, along the rings and once more across
-  double normal_deg = 3;       // of the normal between vertices from the grid's
-  double longest_mm = 4;    // sides of the facets, so that light baked at vertices keeps its form
+  double normal_deg = 3;        // of the normal between vertices from the grid's
+  double longest_mm = 4;  // sides of the facets, so that light baked at vertices keeps its form
 };
 
 class RingGrid {

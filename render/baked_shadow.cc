@@ -120,7 +120,7 @@ BakedShadow::Lists BakedShadow::ListBlocked(const EmbreeScene& scene,
                            ++above;
                            if (packet.far[k] >= 0) continue;
                            blocked.push_back({std::uint16_t(first + k),
-                                              std::uint16_t(kCosineUnits * cosine[k] + 0.5f)});
+                                              std::uint16_t(std::lrint(kCosineUnits * cosine[k]))});
                          }
                        });
   Lists lists;

@@ -48,6 +48,12 @@ TEST_P(ShippedFrames, TracedContoursAreTheTrueOnesWithinTheirBound) {
   EXPECT_NEAR(traced->boxing.b_mm, frame.boxing.b_mm, 2 * kContourError_mm);
   EXPECT_NEAR(traced->boxing.dbl_mm, frame.boxing.dbl_mm, 4 * kContourError_mm);
   EXPECT_NEAR(traced->boxing.circumference_mm, frame.boxing.circumference_mm, 0.06);
+  const double box = std::max({std::abs(traced->boxing.a_mm - frame.boxing.a_mm),
+                               std::abs(traced->boxing.b_mm - frame.boxing.b_mm),
+                               std::abs(traced->boxing.dbl_mm - frame.boxing.dbl_mm)});
+  RecordProperty("box_um", int(1000 * box));
+  RecordProperty("circumference_um", int(1000 * std::abs(traced->boxing.circumference_mm -
+                                                         frame.boxing.circumference_mm)));
 }
 
 INSTANTIATE_TEST_SUITE_P(All, ShippedFrames,
