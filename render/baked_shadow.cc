@@ -124,6 +124,7 @@ BakedShadow::Lists BakedShadow::ListBlocked(const EmbreeScene& scene,
                          }
                        });
   Lists lists;
+  lists.above = std::uint32_t(above);
   lists.buried = blocked.size() == above;
   if (sees_face) {
     // Those that the face hides go behind the others.
@@ -164,7 +165,7 @@ float BakedShadow::Lists::DifferenceTo(const Lists& other) const {
       differ += std::popcount(bits[part][k] ^ other.bits[part][k]);
     }
   }
-  return float(differ) / (32 * float(bits[0].size()));  // half of the directions are above
+  return float(differ) / float(std::max(above, 1u));
 }
 
 std::size_t BakedShadow::Follow(const EmbreeScene& scene,

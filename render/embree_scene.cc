@@ -121,7 +121,7 @@ Result<EmbreeScene> EmbreeScene::Build(const TriangleMesh& face, const TriangleM
     rtcCommitScene(scene);
     return scene;
   };
-  // No camera ray slips between two triangles. Of the rays that bake light, one in a million may:
+  // No camera ray slips between two triangles. Rays that bake light, one of hundreds each, may:
   // they take a seventh less time so.
   const auto attach = [&](RaySet set, bool moves, bool own_occlusion,
                           std::initializer_list<SceneObject> objects) {

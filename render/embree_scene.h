@@ -63,8 +63,8 @@ class EmbreeScene {
   SceneHit Intersect(RaySet set, const Eigen::Vector3f& origin, const Eigen::Vector3f& direction,
                      float near, float far) const;
   void Intersect16(RaySet set, RayPacket& packet) const;
-  // Any hit: sets far[i] < 0 for rays that are blocked and leaves u, v, triangle, object alone. Of
-  // rays toward the common side of two triangles one in a million may pass.
+  // Any hit: sets far[i] < 0 for rays that are blocked and leaves u, v, triangle, object alone. A
+  // ray exactly toward the common side of two triangles may pass between them.
   void Occluded16(RaySet set, RayPacket& packet) const;
   bool Occluded(RaySet set, const Eigen::Vector3f& origin, const Eigen::Vector3f& direction,
                 float near, float far) const;

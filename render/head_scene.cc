@@ -15,6 +15,9 @@ constexpr int kFrameDirections = 128;
 // The paper's feathering: share of the way from the front to the ear.
 constexpr double kFadeStart = 0.55, kFadeEnd = 0.97;
 
+// Sides of slivers say nothing of how a surface turns over a pixel.
+constexpr double kLeastSide_mm = 0.1;
+
 FrameSurface JoinParts(const Eyewear& eyewear) {
   FrameSurface out;
   out.frame_from_head = eyewear.head_from_frame.inverse();
@@ -50,8 +53,8 @@ FrameSurface JoinParts(const Eyewear& eyewear) {
     for (int k = 0; k < 3; ++k) {
       const std::size_t a = std::size_t(t[k]), b = std::size_t(t[(k + 1) % 3]);
       const double side = (out.mesh.positions[a] - out.mesh.positions[b]).norm();
-      if (side == 0) continue;
-      most = std::max(most, (out.mesh.normals[a] - out.mesh.normals[b]).norm() / side);
+      const double turn = (out.mesh.normals[a] - out.mesh.normals[b]).norm();
+      most = std::max(most, turn / std::max(side, kLeastSide_mm));
     }
     out.curvature.push_back(float(most));
   }

@@ -109,7 +109,8 @@ class BakedShadow {
   struct Lists {
     std::vector<Blocked> blocked;
     std::uint32_t seen = 0;                        // length of the first part
-    bool buried = false;                           // all is blocked
+    std::uint32_t above = 0;                       // directions above the surface
+    bool buried = false;                           // all of them are blocked
     std::vector<std::uint64_t> bits[2];            // of the directions in each part
     float DifferenceTo(const Lists& other) const;  // share of the hemisphere's directions
   };
