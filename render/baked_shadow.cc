@@ -226,14 +226,7 @@ RayPacket BakedShadow::PacketToward(const std::vector<Eigen::Vector3f>& sphere,
     const bool valid = first + k < blocked.size();
     const Eigen::Vector3f& d = sphere[blocked[valid ? first + k : first].direction];
     packet.valid[k] = valid;
-    packet.ox[k] = origin.x();
-    packet.oy[k] = origin.y();
-    packet.oz[k] = origin.z();
-    packet.near[k] = 0;
-    packet.dx[k] = d.x();
-    packet.dy[k] = d.y();
-    packet.dz[k] = d.z();
-    packet.far[k] = std::numeric_limits<float>::infinity();
+    packet.Set(k, origin, d);
   }
   return packet;
 }

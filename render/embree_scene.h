@@ -37,6 +37,20 @@ struct alignas(64) RayPacket {
   float u[kSize], v[kSize];
   std::uint32_t triangle[kSize];
   SceneObject object[kSize];
+
+  // Ray k; `valid` is the caller's to set.
+  template <typename Index>
+  void Set(Index k, const Eigen::Vector3f& origin, const Eigen::Vector3f& direction,
+           float length = kEndless) {
+    ox[k] = origin.x();
+    oy[k] = origin.y();
+    oz[k] = origin.z();
+    near[k] = 0;
+    dx[k] = direction.x();
+    dy[k] = direction.y();
+    dz[k] = direction.z();
+    far[k] = length;
+  }
 };
 
 struct SceneHit {

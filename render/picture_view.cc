@@ -219,14 +219,7 @@ void PictureView::FillBackground() const {
             camera_.Direction((first + k) * FilledPicture::kStep, row * FilledPicture::kStep);
         const Eigen::Vector3f head = rotation_.transpose() * d.cast<float>();
         packet.valid[k] = first + k < corners;
-        packet.ox[k] = eye_.x();
-        packet.oy[k] = eye_.y();
-        packet.oz[k] = eye_.z();
-        packet.near[k] = 0;
-        packet.dx[k] = head.x();
-        packet.dy[k] = head.y();
-        packet.dz[k] = head.z();
-        packet.far[k] = background_depth_;
+        packet.Set(k, eye_, head, background_depth_);
       }
       scene_.Occluded16(RaySet::kHead, packet);
       for (int k = 0; k < RayPacket::kSize && first + k < corners; ++k) {

@@ -62,14 +62,7 @@ struct RayBundle {
     for (std::size_t k = 0; k < RayPacket::kSize; ++k) {
       const std::size_t i = std::min(first + k, n - 1);
       packet.valid[k] = first + k < n;
-      packet.ox[k] = origins[i].x();
-      packet.oy[k] = origins[i].y();
-      packet.oz[k] = origins[i].z();
-      packet.near[k] = 0;
-      packet.dx[k] = directions[i].x();
-      packet.dy[k] = directions[i].y();
-      packet.dz[k] = directions[i].z();
-      packet.far[k] = far[i];
+      packet.Set(k, origins[i], directions[i], far[i]);
     }
   }
   // Fills `hits`, one a ray.

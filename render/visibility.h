@@ -3,7 +3,6 @@
 #pragma once
 
 #include <Eigen/Core>
-#include <limits>
 #include <vector>
 
 #include "render/embree_scene.h"
@@ -35,14 +34,7 @@ void ForHemispherePackets(const std::vector<Eigen::Vector3f>& directions,
     if (!any) continue;
     for (std::size_t k = 0; k < RayPacket::kSize; ++k) {
       const Eigen::Vector3f& d = directions[first + k];
-      packet.ox[k] = origin.x();
-      packet.oy[k] = origin.y();
-      packet.oz[k] = origin.z();
-      packet.near[k] = 0;
-      packet.dx[k] = d.x();
-      packet.dy[k] = d.y();
-      packet.dz[k] = d.z();
-      packet.far[k] = std::numeric_limits<float>::infinity();
+      packet.Set(k, origin, d);
     }
     visit(first, packet, cosine);
   }

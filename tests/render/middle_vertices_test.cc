@@ -41,7 +41,9 @@ TEST(MiddleVertices, AreNotOnSharpEdges) {
       roof.triangles.emplace_back(a, a + 4, a + 3);
     }
   }
-  for (const MiddleVertex& m : MiddleVertices(roof)) {
+  const std::vector<MiddleVertex> middles = MiddleVertices(roof);
+  EXPECT_FALSE(middles.empty());
+  for (const MiddleVertex& m : middles) {
     EXPECT_EQ(roof.normals[m.vertex], roof.normals[m.one]);
     EXPECT_EQ(roof.normals[m.vertex], roof.normals[m.other]);
   }

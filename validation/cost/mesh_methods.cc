@@ -127,14 +127,7 @@ class EmbreeLens {
  private:
   static void Set(RayPacket& packet, std::size_t k, const Eigen::Vector3f& origin,
                   const Eigen::Vector3f& d) {
-    packet.ox[k] = origin.x();
-    packet.oy[k] = origin.y();
-    packet.oz[k] = origin.z();
-    packet.dx[k] = d.x();
-    packet.dy[k] = d.y();
-    packet.dz[k] = d.z();
-    packet.near[k] = 0;
-    packet.far[k] = std::numeric_limits<float>::infinity();
+    packet.Set(k, origin, d);
     packet.object[k] = SceneObject::kNone;
   }
   // Snell's law; zero on total reflection.

@@ -85,14 +85,7 @@ Light Gather(const ShadingScene& scene, const Environment& environment, const Su
       const bool valid = first + k < set.directions.size();
       const Eigen::Vector3f d = basis * set.directions[valid ? first + k : first];
       packet.valid[k] = valid;
-      packet.ox[k] = origin.x();
-      packet.oy[k] = origin.y();
-      packet.oz[k] = origin.z();
-      packet.near[k] = 0;
-      packet.dx[k] = d.x();
-      packet.dy[k] = d.y();
-      packet.dz[k] = d.z();
-      packet.far[k] = std::numeric_limits<float>::infinity();
+      packet.Set(k, origin, d);
     }
     scene.rays.Occluded16(RaySet::kFrame, packet);
     for (std::size_t k = 0; k < RayPacket::kSize; ++k) {
@@ -199,14 +192,7 @@ Light GatherImportance(const ShadingScene& scene, const Environment& environment
     const double density = (1 - share) * c / kPi + share * sampler.Density(world);
     value[filled] = float(c / density) * environment.Radiance(world);
     packet.valid[filled] = 1;
-    packet.ox[filled] = origin.x();
-    packet.oy[filled] = origin.y();
-    packet.oz[filled] = origin.z();
-    packet.near[filled] = 0;
-    packet.dx[filled] = d.x();
-    packet.dy[filled] = d.y();
-    packet.dz[filled] = d.z();
-    packet.far[filled] = std::numeric_limits<float>::infinity();
+    packet.Set(filled, origin, d);
     if (++filled == RayPacket::kSize) flush();
   };
   for (const Eigen::Vector3f& d : cosine.directions) add(basis * d);
