@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cstdlib>
+#include <utility>
 
 namespace lorgnette {
 namespace {
@@ -52,13 +53,11 @@ std::vector<bool> PixelsToRefine(const PixelBox& area, const PixelBox& box,
     for (int x = area.x0; x < area.x1; ++x) {
       const Glance own = at(x, y);
       bool refine = own.kind == Kind::kLensElsewhere;
-      for (int dy = -1; dy <= 1 && !refine; ++dy) {
-        for (int dx = -1; dx <= 1 && !refine; ++dx) {
-          const Glance other = at(x + dx, y + dy);
-          refine = other.kind != own.kind ||
-                   (own.kind == Kind::kFrame &&
-                    std::abs(int(own.code) - int(other.code)) > kFrameContrast);
-        }
+      for (const auto& [dx, dy] : {std::pair{-1, 0}, {1, 0}, {0, -1}, {0, 1}}) {
+        const Glance other = at(x + dx, y + dy);
+        refine = refine || other.kind != own.kind ||
+                 (own.kind == Kind::kFrame &&
+                  std::abs(int(own.code) - int(other.code)) > kFrameContrast);
       }
       wanted[TileIndex(x - area.x0, y - area.y0)] = refine;
     }

@@ -22,7 +22,9 @@ struct Glance {
   std::uint8_t code = 0;
 };
 
-// Pixels whose neighbourhood meets different things, and those of the frame with some contrast.
+// Pixels beside which (left, right, above, below) something else is met, and those of the frame
+// with some contrast. What differs at a corner alone is a small part of the pixel: with corners a
+// fourth more pixels were refined, for 0.2 to 0.6 dB.
 //   glances  of the pixels of `box`, row by row; beyond it they are taken to go on as at its border
 std::vector<bool> PixelsToRefine(const PixelBox& area, const PixelBox& box,
                                  const std::vector<Glance>& glances);
