@@ -55,16 +55,47 @@ ContourIndex::ContourIndex(std::vector<Eigen::Vector2d> polygon) : polygon_(std:
   grid_low_ = low_ - kBorderCells * cell_ * Eigen::Vector2d::Ones();
   columns_ = int(std::ceil(size.x() / cell_)) + 2 * kBorderCells;
   rows_ = int(std::ceil(size.y() / cell_)) + 2 * kBorderCells;
-  row_edges_.resize(std::size_t(rows_));
-  for (std::size_t i = 0; i < n; ++i) {
-    const double y0 = polygon_[i].y(), y1 = polygon_[(i + 1) % n].y();
-    const int first =
-        std::clamp(int((std::min(y0, y1) - grid_low_.y()) * inverse_cell_), 0, rows_ - 1);
-    const int last =
-        std::clamp(int((std::max(y0, y1) - grid_low_.y()) * inverse_cell_), 0, rows_ - 1);
-    for (int row = first; row <= last; ++row) row_edges_[std::size_t(row)].push_back(int(i));
-  }
+  IndexEdges();
+  MeasureDistances();
+}
 
+void ContourIndex::IndexEdges() {
+  const std::size_t n = polygon_.size();
+  // A line that runs along a cell's border may find the edge on the other side of it.
+  const double margin = 1e-6 * cell_;
+  const auto for_cells = [&](auto&& visit) {
+    for (std::size_t i = 0; i < n; ++i) {
+      const Eigen::Vector2d &a = polygon_[i], &b = polygon_[(i + 1) % n];
+      const auto cell = [&](double v, int k, int count) {
+        return std::clamp(int((v - grid_low_[k]) * inverse_cell_), 0, count - 1);
+      };
+      const Eigen::Vector2d low = a.cwiseMin(b), high = a.cwiseMax(b);
+      for (int row = cell(low.y() - margin, 1, rows_); row <= cell(high.y() + margin, 1, rows_);
+           ++row) {
+        for (int column = cell(low.x() - margin, 0, columns_);
+             column <= cell(high.x() + margin, 0, columns_); ++column) {
+          visit(std::size_t(row) * std::size_t(columns_) + std::size_t(column), std::uint32_t(i));
+        }
+      }
+    }
+  };
+  cell_first_.assign(std::size_t(columns_) * std::size_t(rows_) + 1, 0);
+  for_cells([&](std::size_t cell, std::uint32_t) { ++cell_first_[cell + 1]; });
+  for (std::size_t i = 1; i < cell_first_.size(); ++i) cell_first_[i] += cell_first_[i - 1];
+  cell_edges_.resize(cell_first_.back());
+  std::vector<std::uint32_t> next(cell_first_.begin(), cell_first_.end() - 1);
+  for_cells([&](std::size_t cell, std::uint32_t edge) { cell_edges_[next[cell]++] = edge; });
+}
+
+void ContourIndex::MeasureDistances() {
+  // Circles around runs of edges, most of which lie farther off than the nearest found so far.
+  struct Run {
+    std::size_t first, end;  // edges
+    Eigen::Vector2d centre;
+    double radius;
+  };
+  const std::size_t n = polygon_.size();
+  std::vector<Run> runs;
   for (std::size_t first = 0; first < n; first += kRunEdges) {
     Run run{first, std::min(first + kRunEdges, n), Eigen::Vector2d::Zero(), 0};
     for (std::size_t i = run.first; i <= run.end; ++i) run.centre += polygon_[i % n];
@@ -74,19 +105,25 @@ ContourIndex::ContourIndex(std::vector<Eigen::Vector2d> polygon) : polygon_(std:
     }
     constexpr double kRounding = 1 + 1e-9;
     run.radius *= kRounding;
-    runs_.push_back(run);
+    runs.push_back(run);
   }
-
-  std::vector<float> distance;
   std::size_t likely = 0;  // the run that was nearest to the cell before
+  std::vector<double> crossings;
   for (int row = 0; row < rows_; ++row) {
+    const double y = grid_low_.y() + cell_ * (row + 0.5);
+    crossings.clear();
+    for (std::size_t i = 0; i < n; ++i) {
+      const Eigen::Vector2d &a = polygon_[i], &b = polygon_[(i + 1) % n];
+      if ((a.y() > y) == (b.y() > y)) continue;
+      crossings.push_back(a.x() + (y - a.y()) / (b.y() - a.y()) * (b.x() - a.x()));
+    }
     for (int column = 0; column < columns_; ++column) {
-      const Eigen::Vector2d centre = grid_low_ + cell_ * Eigen::Vector2d(column + 0.5, row + 0.5);
+      const Eigen::Vector2d centre(grid_low_.x() + cell_ * (column + 0.5), y);
       double nearest2 = std::numeric_limits<double>::infinity();
       const std::size_t start = likely;
-      for (std::size_t k = 0; k < runs_.size(); ++k) {
-        const std::size_t at = (start + k) % runs_.size();
-        const Run& run = runs_[at];
+      for (std::size_t k = 0; k < runs.size(); ++k) {
+        const std::size_t at = (start + k) % runs.size();
+        const Run& run = runs[at];
         const double least = (run.centre - centre).norm() - run.radius;
         if (least > 0 && least * least >= nearest2) continue;
         for (std::size_t i = run.first; i < run.end; ++i) {
@@ -96,11 +133,11 @@ ContourIndex::ContourIndex(std::vector<Eigen::Vector2d> polygon) : polygon_(std:
           likely = at;
         }
       }
-      const double sign = Contains(centre.x(), centre.y()) ? 1 : -1;
-      distance.push_back(float(sign * std::sqrt(nearest2)));
+      const auto to_the_left = std::count_if(crossings.begin(), crossings.end(),
+                                             [&](double x) { return x > centre.x(); });
+      distance_.push_back(float((to_the_left % 2 != 0 ? 1 : -1) * std::sqrt(nearest2)));
     }
   }
-  distance_ = std::move(distance);
 }
 
 bool ContourIndex::InGrid(double x, double y) const {
@@ -108,48 +145,61 @@ bool ContourIndex::InGrid(double x, double y) const {
          y < grid_low_.y() + cell_ * rows_;
 }
 
-double ContourIndex::CentreDistance(double x, double y) const {
+std::size_t ContourIndex::CellOf(double x, double y) const {
   const int column = std::clamp(int((x - grid_low_.x()) * inverse_cell_), 0, columns_ - 1);
   const int row = std::clamp(int((y - grid_low_.y()) * inverse_cell_), 0, rows_ - 1);
-  return double(distance_[std::size_t(row) * std::size_t(columns_) + std::size_t(column)]);
+  return std::size_t(row) * std::size_t(columns_) + std::size_t(column);
 }
 
-bool ContourIndex::Contains(double x, double y) const {
-  if (!(x >= low_.x() && x <= high_.x() && y >= low_.y() && y <= high_.y())) return false;
-  if (!distance_.empty()) {
-    const double centre = CentreDistance(x, y);
-    if (std::abs(centre) > half_diagonal_) return centre > 0;
-  }
-  return CrossingsAreOdd(x, y);
-}
+bool ContourIndex::Contains(double x, double y) const { return Locate(x, y).inside; }
 
 ContourIndex::Place ContourIndex::Locate(double x, double y) const {
   if (!(x >= low_.x() && x <= high_.x() && y >= low_.y() && y <= high_.y())) {
     return {false, Clearance(x, y)};
   }
-  const double centre = CentreDistance(x, y);
-  const bool inside = std::abs(centre) > half_diagonal_ ? centre > 0 : CrossingsAreOdd(x, y);
+  const std::size_t cell = CellOf(x, y);
+  const double centre = double(distance_[cell]);
+  const bool inside = std::abs(centre) > half_diagonal_ ? centre > 0 : InsideInCell(cell, x, y);
   return {inside, centre - half_diagonal_};
 }
 
 bool ContourIndex::CrossingsAreOdd(double x, double y) const {
-  const int row = std::clamp(int((y - grid_low_.y()) * inverse_cell_), 0, rows_ - 1);
   bool odd = false;
-  for (const int i : row_edges_[std::size_t(row)]) {
-    const Eigen::Vector2d& a = polygon_[std::size_t(i)];
-    const Eigen::Vector2d& b = polygon_[(std::size_t(i) + 1) % polygon_.size()];
+  for (std::size_t i = 0; i < polygon_.size(); ++i) {
+    const Eigen::Vector2d &a = polygon_[i], &b = polygon_[(i + 1) % polygon_.size()];
     if ((a.y() > y) == (b.y() > y)) continue;
     if (x < a.x() + (y - a.y()) / (b.y() - a.y()) * (b.x() - a.x())) odd = !odd;
   }
   return odd;
 }
 
+bool ContourIndex::InsideInCell(std::size_t cell, double x, double y) const {
+  const Eigen::Vector2d centre =
+      grid_low_ + cell_ * Eigen::Vector2d(double(cell % std::size_t(columns_)) + 0.5,
+                                          double(cell / std::size_t(columns_)) + 0.5);
+  const Eigen::Vector2d way = Eigen::Vector2d(x, y) - centre;
+  bool inside = distance_[cell] > 0;
+  // A centre on the boundary itself tells nothing.
+  if (std::abs(double(distance_[cell])) < 1e-6 * cell_) return CrossingsAreOdd(x, y);
+  for (std::size_t k = cell_first_[cell]; k < cell_first_[cell + 1]; ++k) {
+    const std::size_t i = cell_edges_[k];
+    const Eigen::Vector2d& a = polygon_[i];
+    const Eigen::Vector2d& b = polygon_[i + 1 == polygon_.size() ? 0 : i + 1];
+    const double before = Cross(way, a - centre), after = Cross(way, b - centre);
+    if ((before > 0) == (after > 0)) continue;
+    // Share of the way at which the edge's line is met.
+    const double across = Cross(way, b - a), along = Cross(a - centre, b - a);
+    if (across > 0 ? along > 0 && along <= across : along < 0 && along >= across) inside = !inside;
+  }
+  return inside;
+}
+
 double ContourIndex::Clearance(double x, double y) const {
-  return InGrid(x, y) ? CentreDistance(x, y) - half_diagonal_ : -half_diagonal_;
+  return InGrid(x, y) ? double(distance_[CellOf(x, y)]) - half_diagonal_ : -half_diagonal_;
 }
 
 double ContourIndex::OutsideBy(double x, double y) const {
-  if (InGrid(x, y)) return -CentreDistance(x, y) - half_diagonal_;
+  if (InGrid(x, y)) return -double(distance_[CellOf(x, y)]) - half_diagonal_;
   const double dx = std::max({low_.x() - x, x - high_.x(), 0.0});
   const double dy = std::max({low_.y() - y, y - high_.y(), 0.0});
   return std::hypot(dx, dy);
@@ -160,32 +210,55 @@ std::optional<ContourIndex::Crossing> ContourIndex::FirstCrossing(const Eigen::V
                                                                   double t_min,
                                                                   double t_max) const {
   const std::size_t n = polygon_.size();
-  const double length = d.norm();
+  // The part of the line inside the box around the polygon.
+  double t = t_min, end = t_max;
+  const double margin = 1e-6 * cell_;
+  for (int k = 0; k < 2; ++k) {
+    const double low = low_[k] - margin - p[k], high = high_[k] + margin - p[k];
+    if (d[k] == 0) {
+      if (low > 0 || high < 0) return std::nullopt;
+      continue;
+    }
+    t = std::max(t, std::min(low / d[k], high / d[k]));
+    end = std::min(end, std::max(low / d[k], high / d[k]));
+  }
+  const double a_cell = cell_ / d.norm();
   double best = t_max, best_s = 0;
   std::size_t best_edge = n;
-  for (const Run& run : runs_) {
-    const Eigen::Vector2d to_centre = run.centre - p;
-    const double reach = run.radius * length;
-    if (std::abs(Cross(d, to_centre)) > reach) continue;
-    // Distances along the line, times length.
-    const double middle = d.dot(to_centre) / length;
-    if (middle + run.radius < t_min * length || middle - run.radius > best * length) continue;
-    double before = Cross(d, polygon_[run.first] - p);
-    for (std::size_t i = run.first; i < run.end; ++i) {
-      const std::size_t j = i + 1 == n ? 0 : i + 1;
-      const double after = Cross(d, polygon_[j] - p);
-      if ((before > 0) != (after > 0)) {
-        const double s = before / (before - after);
-        const Eigen::Vector2d crossing = polygon_[i] + s * (polygon_[j] - polygon_[i]);
-        const double t = (crossing - p).dot(d) / d.squaredNorm();
-        if (t > t_min && t < best) {
-          best = t;
-          best_s = s;
-          best_edge = i;
-        }
-      }
-      before = after;
+  // From cell to cell, and past what is free of edges at once.
+  while (t <= end) {
+    const Eigen::Vector2d at = p + t * d;
+    const std::size_t cell = CellOf(at.x(), at.y());
+    const double free = std::abs(double(distance_[cell])) - half_diagonal_;
+    const Eigen::Vector2i place(int(cell % std::size_t(columns_)),
+                                int(cell / std::size_t(columns_)));
+    double leave = std::numeric_limits<double>::infinity();
+    for (int k = 0; k < 2; ++k) {
+      if (d[k] == 0) continue;
+      const double border = grid_low_[k] + cell_ * (place[k] + (d[k] > 0 ? 1 : 0));
+      leave = std::min(leave, (border - p[k]) / d[k]);
     }
+    constexpr double kLeastStep = 1e-9;  // cells: past a border, whatever is rounded
+    leave = std::max(leave, t) + kLeastStep * a_cell;
+    if (free > 0) {
+      t = std::max(leave, t + free * inverse_cell_ * a_cell);
+      continue;
+    }
+    for (std::size_t k = cell_first_[cell]; k < cell_first_[cell + 1]; ++k) {
+      const std::size_t i = cell_edges_[k], j = i + 1 == n ? 0 : i + 1;
+      const double before = Cross(d, polygon_[i] - p), after = Cross(d, polygon_[j] - p);
+      if ((before > 0) == (after > 0)) continue;
+      const double s = before / (before - after);
+      const Eigen::Vector2d crossing = polygon_[i] + s * (polygon_[j] - polygon_[i]);
+      const double met = (crossing - p).dot(d) / d.squaredNorm();
+      if (met > t_min && met < best) {
+        best = met;
+        best_s = s;
+        best_edge = i;
+      }
+    }
+    if (best <= leave) break;
+    t = leave;
   }
   if (best_edge == n) return std::nullopt;
   const std::size_t next = best_edge + 1 == n ? 0 : best_edge + 1;

@@ -4,6 +4,7 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <cstdint>
 #include <optional>
 #include <vector>
 
@@ -19,7 +20,7 @@ class ContourIndex {
   const Eigen::Vector2d& low() const { return low_; }
   const Eigen::Vector2d& high() const { return high_; }
 
-  // Exact (crossing number); false for a NaN.
+  // By crossings with the polygon itself; false for a NaN.
   bool Contains(double x, double y) const;
   // Contains and Clearance at once.
   struct Place {
@@ -44,24 +45,22 @@ class ContourIndex {
   std::vector<Eigen::Vector2d> polygon_;
   std::vector<Eigen::Vector2d> vertex_normals_;
   Eigen::Vector2d low_{0, 0}, high_{0, 0};
-  // Signed distance at the centre of the cell that holds (x, y).
-  double CentreDistance(double x, double y) const;
-  bool CrossingsAreOdd(double x, double y) const;
+  void IndexEdges();
+  void MeasureDistances();
+  std::size_t CellOf(double x, double y) const;  // the nearest to points beside the grid
   bool InGrid(double x, double y) const;
+  bool CrossingsAreOdd(double x, double y) const;
+  // Inside or not, in a cell that the boundary may cross: the centre is known, and the way from
+  // there crosses edges of this cell only.
+  bool InsideInCell(std::size_t cell, double x, double y) const;
 
   // Cells over the bounding box and a border around it.
   Eigen::Vector2d grid_low_{0, 0};
   int columns_ = 0, rows_ = 0;
   double cell_ = 1, inverse_cell_ = 1, half_diagonal_ = 0;
-  std::vector<float> distance_;              // signed, of the cells' centres
-  std::vector<std::vector<int>> row_edges_;  // edges that touch each row of cells
-  // Circles around runs of edges, which most lines pass by.
-  struct Run {
-    std::size_t first, end;  // edges
-    Eigen::Vector2d centre;
-    double radius;
-  };
-  std::vector<Run> runs_;
+  std::vector<float> distance_;  // signed, of the cells' centres
+  // Edges that touch cell i: cell_edges_[cell_first_[i] .. cell_first_[i + 1]).
+  std::vector<std::uint32_t> cell_first_, cell_edges_;
 };
 
 }  // namespace lorgnette

@@ -61,6 +61,17 @@ TEST(ContourIndex, FindsTheNearestCrossingOfAnyLine) {
       EXPECT_NEAR(found->t, nearest, 1e-9 * (1 + nearest));
     }
     crossings += found.has_value();
+    // Inside, by the edges that a line to the right crosses: in a quarter of the draws close to
+    // one, in cells that it crosses.
+    const Eigen::Vector2d& corner = star[std::size_t(i) % star.size()];
+    const Eigen::Vector2d q = i % 4 == 0 ? Eigen::Vector2d(corner + 0.01 * p) : p;
+    bool inside = false;
+    for (std::size_t k = 0; k < star.size(); ++k) {
+      const Eigen::Vector2d &a = star[k], &b = star[(k + 1) % star.size()];
+      if ((a.y() > q.y()) == (b.y() > q.y())) continue;
+      inside ^= q.x() < a.x() + (q.y() - a.y()) / (b.y() - a.y()) * (b.x() - a.x());
+    }
+    EXPECT_EQ(index.Contains(q.x(), q.y()), inside) << q.transpose();
     const ContourIndex::Place at = index.Locate(p.x(), p.y());
     EXPECT_EQ(at.inside, index.Contains(p.x(), p.y()));
     EXPECT_EQ(at.clearance, index.Clearance(p.x(), p.y()));
