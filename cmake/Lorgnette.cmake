@@ -35,6 +35,15 @@ if(CMAKE_UNITY_BUILD AND CMAKE_CXX_COMPILER_ID STREQUAL "GNU")
 endif()
 target_include_directories(lorgnette_options INTERFACE "${PROJECT_SOURCE_DIR}")
 
+# Highway compiles a kernel once a target. SSSE3 alone is found in no machine that traces often;
+# under the sanitizers one target stands for all, since they share their source. Definition for the
+# sources of kernels, their tests and benchmarks.
+set(LORGNETTE_HIGHWAY "HWY_DISABLED_TARGETS=HWY_SSSE3")
+if(CMAKE_CXX_FLAGS MATCHES "-fsanitize")
+  set(LORGNETTE_HIGHWAY
+      "HWY_DISABLED_TARGETS=(HWY_SSSE3|HWY_SSE4|HWY_AVX3|HWY_AVX3_DL)")
+endif()
+
 # Tests are compiled more often than they run: a third of their time goes at -O2.
 add_library(lorgnette_test_options INTERFACE)
 target_link_libraries(lorgnette_test_options INTERFACE lorgnette_options)

@@ -92,9 +92,16 @@ MeshReport CheckMesh(const TriangleMesh& mesh, bool find_self_intersections) {
       ++report.non_manifold_edges;
     }
   }
-  std::vector<bool> used(merged.positions.size(), false);
-  for (const Eigen::Vector3i& t : merged.triangles) used[std::size_t(root(t[0]))] = true;
-  report.components = int(std::count(used.begin(), used.end(), true));
+  std::map<int, double> volumes;  // one a component
+  for (const Eigen::Vector3i& t : merged.triangles) {
+    const auto at = [&](int k) { return merged.positions[std::size_t(t[k])]; };
+    volumes[root(t[0])] += at(0).dot(at(1).cross(at(2))) / 6;
+  }
+  report.components = int(volumes.size());
+  for (const auto& [vertex, volume] : volumes) {
+    report.least_part_mm3 =
+        vertex == volumes.begin()->first ? volume : std::min(report.least_part_mm3, volume);
+  }
   report.volume_mm3 = SignedVolume(merged);
   if (find_self_intersections) report.self_intersections = CountSelfIntersections(merged);
   return report;

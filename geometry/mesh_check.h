@@ -16,6 +16,7 @@ struct MeshReport {
   int degenerate_triangles = 0;  // two corners at one position
   int self_intersections = -1;   // pairs of triangles; -1: not asked for
   double volume_mm3 = 0;         // meaningful when closed
+  double least_part_mm3 = 0;     // of the components' volumes; negative: one faces inwards
 
   bool closed() const { return boundary_edges == 0 && non_manifold_edges == 0; }
 };

@@ -3,7 +3,6 @@
 
 #include <algorithm>
 #include <cstdlib>
-#include <utility>
 
 namespace lorgnette {
 namespace {
@@ -16,50 +15,53 @@ constexpr float kShadowContrast = 0.02f;
 
 }  // namespace
 
-void PlaceSamples(const PixelBox& area, int side, const std::vector<bool>& wanted,
+void PlaceSamples(const PixelBox& area, int side, const PixelFlags* wanted,
                   std::vector<CameraSample>& samples) {
-  samples.clear();
+  const std::size_t each = std::size_t(side) * std::size_t(side);
+  samples.resize(PixelFlags().size() * each);
+  CameraSample* next = samples.data();
   const int block = std::max(1, 4 / side);
+  const float step = 1 / float(side);
   for (int by = area.y0; by < area.y1; by += block) {
     for (int bx = area.x0; bx < area.x1; bx += block) {
       for (int y = by; y < std::min(by + block, area.y1); ++y) {
         for (int x = bx; x < std::min(bx + block, area.x1); ++x) {
-          const int pixel = (y - area.y0) * kTileSide + (x - area.x0);
-          if (!wanted.empty() && !wanted[std::size_t(pixel)]) continue;
-          for (int s = 0; s < side * side; ++s) {
-            CameraSample sample;
-            sample.x = float(x) + (float(s % side) + 0.5f) / float(side);
-            const int row = s / side;
-            sample.y = float(y) + (float(row) + 0.5f) / float(side);
-            sample.pixel = std::uint16_t(pixel);
-            samples.push_back(sample);
+          const std::size_t pixel = TileIndex(x - area.x0, y - area.y0);
+          if (wanted != nullptr && !(*wanted)[pixel]) continue;
+          for (int row = 0; row < side; ++row) {
+            for (int column = 0; column < side; ++column) {
+              *next = CameraSample{};
+              next->x = float(x) + (float(column) + 0.5f) * step;
+              next->y = float(y) + (float(row) + 0.5f) * step;
+              next->pixel = std::uint16_t(pixel);
+              ++next;
+            }
           }
         }
       }
     }
   }
+  samples.resize(std::size_t(next - samples.data()));
 }
 
-std::vector<bool> PixelsToRefine(const PixelBox& area, const PixelBox& box,
-                                 const std::vector<Glance>& glances) {
+PixelFlags PixelsToRefine(const PixelBox& area, const PixelBox& box,
+                          const std::vector<Glance>& glances) {
   using Kind = CameraSample::Kind;
-  std::vector<bool> wanted(std::size_t(kTileSide) * kTileSide, false);
-  const auto at = [&](int x, int y) {
-    const std::size_t row = std::size_t(std::clamp(y, box.y0, box.y1 - 1) - box.y0);
-    const std::size_t column = std::size_t(std::clamp(x, box.x0, box.x1 - 1) - box.x0);
-    return glances[row * std::size_t(box.x1 - box.x0) + column];
+  const std::size_t width = std::size_t(box.x1 - box.x0);
+  const auto differ = [](const Glance& own, const Glance& other) {
+    return other.kind != own.kind ||
+           (own.kind == Kind::kFrame && std::abs(int(own.code) - int(other.code)) > kFrameContrast);
   };
+  PixelFlags wanted{};
   for (int y = area.y0; y < area.y1; ++y) {
+    const Glance* const row = glances.data() + std::size_t(y - box.y0) * width;
+    const std::size_t above = y > box.y0 ? width : 0, below = y + 1 < box.y1 ? width : 0;
     for (int x = area.x0; x < area.x1; ++x) {
-      const Glance own = at(x, y);
-      bool refine = own.kind == Kind::kLensElsewhere;
-      for (const auto& [dx, dy] : {std::pair{-1, 0}, {1, 0}, {0, -1}, {0, 1}}) {
-        const Glance other = at(x + dx, y + dy);
-        refine = refine || other.kind != own.kind ||
-                 (own.kind == Kind::kFrame &&
-                  std::abs(int(own.code) - int(other.code)) > kFrameContrast);
-      }
-      wanted[TileIndex(x - area.x0, y - area.y0)] = refine;
+      const Glance* const own = row + (x - box.x0);
+      const std::size_t left = x > box.x0, right = x + 1 < box.x1;
+      wanted[TileIndex(x - area.x0, y - area.y0)] =
+          own->kind == Kind::kLensElsewhere || differ(*own, *(own - left)) ||
+          differ(*own, own[right]) || differ(*own, *(own - above)) || differ(*own, own[below]);
     }
   }
   return wanted;
@@ -71,8 +73,8 @@ bool OnShadowGrid(int x, int y) {
 }
 
 void FillShadowGrid(const PixelBox& area, std::vector<Eigen::Vector3f>& factor,
-                    const std::vector<CameraSample::Kind>& kind, std::vector<bool>& wanted) {
-  wanted.assign(std::size_t(kTileSide) * kTileSide, false);
+                    const std::vector<CameraSample::Kind>& kind, PixelFlags& wanted) {
+  wanted.fill(false);
   const int width = area.x1 - area.x0, height = area.y1 - area.y0;
   for (int y = 0; y < height; ++y) {
     for (int x = 0; x < width; ++x) {

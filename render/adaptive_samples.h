@@ -3,6 +3,7 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <array>
 #include <cstdint>
 #include <vector>
 
@@ -11,9 +12,12 @@
 
 namespace lorgnette {
 
-// Samples of the pixels that `wanted` names (all of them when it is empty), side x side a pixel, in
-// blocks of pixels that fill a packet of 16.
-void PlaceSamples(const PixelBox& area, int side, const std::vector<bool>& wanted,
+// One of each pixel of a tile.
+using PixelFlags = std::array<bool, std::size_t(kTileSide) * kTileSide>;
+
+// Samples of the pixels that `wanted` names (of all: null), side x side a pixel, in blocks of
+// pixels that fill a packet of 16.
+void PlaceSamples(const PixelBox& area, int side, const PixelFlags* wanted,
                   std::vector<CameraSample>& samples);
 
 // Adaptive: what the ray through a pixel's centre met, and how bright it was, encoded.
@@ -26,8 +30,8 @@ struct Glance {
 // with some contrast. What differs at a corner alone is a small part of the pixel: with corners a
 // fourth more pixels were refined, for 0.2 to 0.6 dB.
 //   glances  of the pixels of `box`, row by row; beyond it they are taken to go on as at its border
-std::vector<bool> PixelsToRefine(const PixelBox& area, const PixelBox& box,
-                                 const std::vector<Glance>& glances);
+PixelFlags PixelsToRefine(const PixelBox& area, const PixelBox& box,
+                          const std::vector<Glance>& glances);
 
 // Adaptive, where only the face's shadow falls: samples lie on every second column and row of the
 // tile and on its last ones.
@@ -37,6 +41,6 @@ bool OnShadowGrid(int x, int y);
 // same thing and their factors differ by less than a code value or two; `wanted` receives the
 // others. `factor` and `kind` hold a tile's pixels.
 void FillShadowGrid(const PixelBox& area, std::vector<Eigen::Vector3f>& factor,
-                    const std::vector<CameraSample::Kind>& kind, std::vector<bool>& wanted);
+                    const std::vector<CameraSample::Kind>& kind, PixelFlags& wanted);
 
 }  // namespace lorgnette

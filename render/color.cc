@@ -4,6 +4,7 @@
 #include <tbb/blocked_range.h>
 #include <tbb/parallel_for.h>
 
+#include <algorithm>
 #include <array>
 #include <bit>
 #include <cmath>
@@ -12,10 +13,10 @@
 namespace lorgnette {
 namespace {
 
-// A bucket holds the floats that share sign, exponent and the leading 7 bits of the mantissa. In
-// [0, 1] a bucket spans at most 1/128 of an e-fold, less than 0.9 codes, so that finding the code
-// needs at most two comparisons from the code at the bucket's lower end.
-constexpr int kBucketShift = 16;
+// A bucket holds the floats that share sign, exponent and the leading 8 bits of the mantissa. In
+// [0, 1] a bucket spans at most 1/256 of an e-fold, less than half a code, so that finding the code
+// needs one comparison from the code at the bucket's lower end.
+constexpr int kBucketShift = 15;
 constexpr std::uint32_t kBuckets = (std::bit_cast<std::uint32_t>(1.0f) >> kBucketShift) + 1;
 
 struct Tables {
@@ -49,11 +50,10 @@ const Tables& GetTables() {
 }
 
 std::uint8_t Code(const Tables& tables, float linear) {
-  if (!(linear > 0)) return 0;
-  if (linear >= 1) return 255;
-  int code = tables.first_code[std::bit_cast<std::uint32_t>(linear) >> kBucketShift];
-  while (linear >= tables.next[code]) ++code;
-  return static_cast<std::uint8_t>(code);
+  constexpr float kBelowOne = 0x1.fffffep-1f;                        // its code is 255
+  const float within = std::min(std::max(0.0f, linear), kBelowOne);  // NaN: 0
+  const std::uint8_t code = tables.first_code[std::bit_cast<std::uint32_t>(within) >> kBucketShift];
+  return static_cast<std::uint8_t>(code + (within >= tables.next[code]));
 }
 
 constexpr std::size_t kGrain = 1 << 15;  // values a task
@@ -77,6 +77,11 @@ void LinearFromCodes(const std::uint8_t* codes, std::size_t count, float* linear
 }
 
 std::uint8_t CodeFromLinear(float linear) { return Code(GetTables(), linear); }
+
+void CodesFromLinear(const float* linear, std::size_t count, std::uint8_t* codes) {
+  const Tables& tables = GetTables();
+  for (std::size_t i = 0; i < count; ++i) codes[i] = Code(tables, linear[i]);
+}
 
 ImageRgbF LinearFromDisplay(const ImageRgb8& image) {
   const Tables& tables = GetTables();

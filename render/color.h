@@ -20,6 +20,7 @@ void LinearFromCodes(const std::uint8_t* codes, std::size_t count, float* linear
 // Code value nearest to a linear value on the encoded scale: what round(255 SrgbFromLinear(x))
 // gives. Below 0 and NaN: 0; above 1: 255.
 std::uint8_t CodeFromLinear(float linear);
+void CodesFromLinear(const float* linear, std::size_t count, std::uint8_t* codes);
 
 // Whole images. DisplayFromLinear(LinearFromDisplay(image)) is `image`, exactly.
 ImageRgbF LinearFromDisplay(const ImageRgb8& image);

@@ -15,6 +15,7 @@
 #include "render/head_scene.h"
 #include "render/hit_map.h"
 #include "render/ray_follower.h"
+#include "render/screen_scene.h"
 #include "render/tile_mask.h"
 #include "render/tile_renderer.h"
 
@@ -62,6 +63,7 @@ void Compositor::UpdateFace(const std::vector<Eigen::Vector3f>& vertices) {
   HeadScene& head = scene_->head;
   LG_CHECK_EQ(vertices.size(), head.face_vertices.size());
   head.face_vertices = vertices;
+  std::copy(vertices.begin(), vertices.end(), head.visible.vertices.begin());
   head.scene.MoveFace(vertices);
   if (!head.baked_shadow) return;
   // The first face differs from the one at rest everywhere at once.
@@ -90,7 +92,15 @@ class Compositor::Canvas {
     if (linear_ != nullptr) {
       std::copy_n(light.data(), 3, linear_->at(x - x0_, y - y0_));
     } else {
-      for (int c = 0; c < 3; ++c) display_->at(x, y)[c] = CodeFromLinear(light[c]);
+      CodesFromLinear(light.data(), 3, display_->at(x, y));
+    }
+  }
+  // Pixels beside each other, three values each.
+  void PutRow(int x, int y, const float* light, std::size_t pixels) {
+    if (linear_ != nullptr) {
+      std::copy_n(light, 3 * pixels, linear_->at(x - x0_, y - y0_));
+    } else {
+      CodesFromLinear(light, 3 * pixels, display_->at(x, y));
     }
   }
   void PutFrameShare(int x, int y, float share) {
@@ -107,10 +117,10 @@ class Compositor::Canvas {
 
 // One picture, as the passes over it share it.
 struct Compositor::Sitting {
-  Sitting(const HeadScene& head, const InputPicture& picture, const TileMask& tiles,
+  Sitting(const HeadScene& head, const InputPicture& picture, ScreenScene projected,
           const Camera& from, const Eigen::Isometry3d& pose)
       : input(picture),
-        mask(tiles),
+        screen(std::move(projected)),
         camera(from),
         camera_from_head(pose),
         view(input, camera, camera_from_head, head.scene, head.face_vertices, head.face_normals,
@@ -118,7 +128,7 @@ struct Compositor::Sitting {
              head.options.background_depth_mm.value_or(camera_from_head.translation().z() +
                                                        head.options.background_distance_mm)) {}
   InputPicture input;
-  TileMask mask;
+  ScreenScene screen;
   Camera camera;
   Eigen::Isometry3d camera_from_head;
   PictureView view;
@@ -126,17 +136,17 @@ struct Compositor::Sitting {
 
 Compositor::Sitting Compositor::Sit(const ImageRgb8& input, const Camera& camera,
                                     const Eigen::Isometry3d& camera_from_head) const {
-  const TileMask mask = MarkTiles(scene_->head, camera, camera_from_head);
+  ScreenScene screen = ProjectScene(scene_->head, camera, camera_from_head);
   // Refracted rays mostly read near by; what lies farther is decoded when it is read.
-  const PixelBox box = Grown(mask.Bounds(), 2 * kTileSide);
-  return {scene_->head, InputPicture(input, box), mask, camera, camera_from_head};
+  const PixelBox box = Grown(screen.mask.Bounds(), 2 * kTileSide);
+  return {scene_->head, InputPicture(input, box), std::move(screen), camera, camera_from_head};
 }
 
 ImageRgbF Compositor::Render(const ImageRgbF& input, const Camera& camera,
                              const Eigen::Isometry3d& camera_from_head, RenderCounts* counts,
                              const PictureEffects* effects) const {
   const HeadScene& head = scene_->head;
-  const Sitting sitting(head, input, MarkTiles(head, camera, camera_from_head), camera,
+  const Sitting sitting(head, input, ProjectScene(head, camera, camera_from_head), camera,
                         camera_from_head);
   ImageRgbF output = input;
   DrawLinear(sitting, effects != nullptr ? *effects : PictureEffects::Of(head.options.effects),
@@ -191,7 +201,8 @@ ImageRgb8 Compositor::DrawDisplay(const ImageRgb8& input, const Sitting& sitting
   }
   // Blur and grain work in linear light, on the part that changes.
   const int border = CameraLookReach(scene_->head.options.camera_look);
-  const PixelBox box = Clipped(Grown(sitting.mask.Bounds(), border), input.width, input.height);
+  const PixelBox box =
+      Clipped(Grown(sitting.screen.mask.Bounds(), border), input.width, input.height);
   if (box.empty()) return output;
   ImageRgbF part(box.x1 - box.x0, box.y1 - box.y0);
   tbb::parallel_for(0, part.height, [&](int y) {
@@ -199,11 +210,7 @@ ImageRgb8 Compositor::DrawDisplay(const ImageRgb8& input, const Sitting& sitting
   });
   DrawLinear(sitting, effects, counts, part, box.x0, box.y0);
   tbb::parallel_for(0, part.height, [&](int y) {
-    for (int x = 0; x < part.width; ++x) {
-      for (int c = 0; c < 3; ++c) {
-        output.at(box.x0 + x, box.y0 + y)[c] = CodeFromLinear(part.at(x, y)[c]);
-      }
-    }
+    CodesFromLinear(part.at(0, y), 3 * std::size_t(part.width), output.at(box.x0, box.y0 + y));
   });
   return output;
 }
@@ -211,7 +218,7 @@ ImageRgb8 Compositor::DrawDisplay(const ImageRgb8& input, const Sitting& sitting
 RenderCounts Compositor::Draw(const Sitting& sitting, const PictureEffects& effects,
                               Canvas& canvas) const {
   const InputPicture& input = sitting.input;
-  const TileMask& mask = sitting.mask;
+  const TileMask& mask = sitting.screen.mask;
   const Camera& camera = sitting.camera;
   const Eigen::Isometry3d& camera_from_head = sitting.camera_from_head;
   LG_CHECK_EQ(input.width(), camera.width);
@@ -223,7 +230,7 @@ RenderCounts Compositor::Draw(const Sitting& sitting, const PictureEffects& effe
   if (tiles.empty()) return {};
   const HeadScene& head = scene_->head;
   const RayFollower follower(head, sitting.view, camera, camera_from_head, effects);
-  const TileRenderer renderer(head, follower, camera, camera_from_head);
+  const TileRenderer renderer(head, follower, sitting.screen, camera, camera_from_head);
   const int width = input.width(), height = input.height();
   const int side = head.options.samples_per_side;
   const bool adaptive = head.options.adaptive && side > 1;
@@ -241,35 +248,38 @@ RenderCounts Compositor::Draw(const Sitting& sitting, const PictureEffects& effe
     const std::size_t tile = tiles[i];
     const PixelBox area = mask.Area(tile, width, height);
     thread_local std::vector<CameraSample> samples;
-    thread_local std::vector<PixelState> states;
+    thread_local std::vector<PixelState> states(PixelFlags().size());  // says nothing of a shadow
     thread_local std::vector<Eigen::Vector3f> factor;
     thread_local std::vector<CameraSample::Kind> kind;
-    std::vector<bool> wanted(std::size_t(kTileSide) * kTileSide);
+    PixelFlags wanted;
     for (int y = 0; y < kTileSide; ++y) {
-      for (int x = 0; x < kTileSide; ++x) {
-        wanted[TileIndex(x, y)] = OnShadowGrid(x, y);
-      }
+      for (int x = 0; x < kTileSide; ++x) wanted[TileIndex(x, y)] = OnShadowGrid(x, y);
     }
     factor.assign(wanted.size(), Eigen::Vector3f::Ones());
     kind.assign(wanted.size(), CameraSample::Kind::kBackground);
     for (const bool grid : {true, false}) {
       if (!grid) FillShadowGrid(area, factor, kind, wanted);
-      PlaceSamples(area, 1, wanted, samples);
-      states.assign(wanted.size(), PixelState{});
-      renderer.Trace(samples, kTileShadow, states);
+      PlaceSamples(area, 1, &wanted, samples);
+      renderer.Trace(tile, samples, states);
       for (const CameraSample& s : samples) {
         factor[s.pixel] = s.direct;
         kind[s.pixel] = s.kind;
       }
     }
+    const std::size_t across = std::size_t(area.x1 - area.x0);
+    Eigen::Matrix<float, 3, kTileSide> light;
     for (int y = area.y0; y < area.y1; ++y) {
-      for (int x = area.x0; x < area.x1; ++x) {
-        const std::size_t pixel = TileIndex(x - area.x0, y - area.y0);
-        glance(x, y) = {kind[pixel], 0};
-        if ((factor[pixel].array() == 1.0f).all()) continue;
-        ++counts_of[i].shadowed_pixels;
-        canvas.Put(x, y, factor[pixel].cwiseProduct(input.Pixel(x, y)));
+      const std::size_t first = TileIndex(0, y - area.y0);
+      bool changed = false;
+      for (std::size_t x = 0; x < across; ++x) {
+        const Eigen::Vector3f& f = factor[first + x];
+        glance(area.x0 + int(x), y) = {kind[first + x], 0};
+        const bool darker = f.x() != 1 || f.y() != 1 || f.z() != 1;
+        counts_of[i].shadowed_pixels += darker;
+        changed = changed || darker;
+        light.col(Eigen::Index(x)) = f.cwiseProduct(input.Pixel(area.x0 + int(x), y));
       }
+      if (changed) canvas.PutRow(area.x0, y, light.data(), across);
     }
   };
   const auto render_tile = [&](std::size_t i, bool refine) {
@@ -280,7 +290,7 @@ RenderCounts Compositor::Draw(const Sitting& sitting, const PictureEffects& effe
       return;
     }
     const PixelBox area = mask.Area(tile, width, height);
-    std::vector<bool> wanted;
+    PixelFlags wanted;
     if (refine) {
       if (content == kTileShadow) return;
       wanted = PixelsToRefine(area, box, glances);
@@ -291,22 +301,24 @@ RenderCounts Compositor::Draw(const Sitting& sitting, const PictureEffects& effe
     thread_local std::vector<CameraSample> samples;
     thread_local std::vector<PixelState> states;
     thread_local std::vector<PixelSum> sums;
-    PlaceSamples(area, here, wanted, samples);
-    states.assign(std::size_t(kTileSide) * kTileSide, PixelState{});
+    PlaceSamples(area, here, refine ? &wanted : nullptr, samples);
+    states.resize(wanted.size());
+    sums.resize(wanted.size());
     for (const CameraSample& s : samples) {
+      states[s.pixel] = PixelState{};
+      sums[s.pixel] = PixelSum{};
       const std::uint32_t x = std::uint32_t(s.x), y = std::uint32_t(s.y);
       states[s.pixel].seed = y * 7919u + x * 104729u;
       states[s.pixel].side = std::uint8_t(here);
     }
-    renderer.Trace(samples, content, states);
-    sums.assign(states.size(), PixelSum{});
+    renderer.Trace(tile, samples, states);
     const float share = 1.0f / float(here * here);
     for (const CameraSample& s : samples) sums[s.pixel].Add(s, share);
     RenderCounts& count = counts_of[i];
     for (int y = area.y0; y < area.y1; ++y) {
       for (int x = area.x0; x < area.x1; ++x) {
         const std::size_t pixel = TileIndex(x - area.x0, y - area.y0);
-        if (!wanted.empty() && !wanted[pixel]) continue;
+        if (refine && !wanted[pixel]) continue;
         const PixelSum& sum = sums[pixel];
         if (!refine) {
           count.lens_pixels += sum.lens;

@@ -2,10 +2,13 @@
 #include "render/head_scene.h"
 
 #include <fmt/format.h>
+#include <tbb/parallel_for.h>
 #include <tbb/parallel_invoke.h>
 
 #include <algorithm>
 #include <cmath>
+
+#include "geometry/mesh_check.h"
 
 namespace lorgnette {
 namespace {
@@ -15,14 +18,32 @@ constexpr int kFrameDirections = 128;
 // The paper's feathering: share of the way from the front to the ear.
 constexpr double kFadeStart = 0.55, kFadeEnd = 0.97;
 
+bool IsDrawn(const FramePart& part) {
+  return part.kind != FramePartKind::kDemoLens && !part.mesh.empty();
+}
+
 // Sides of slivers say nothing of how a surface turns over a pixel.
 constexpr double kLeastSide_mm = 0.1;
+
+// Of the parts that are drawn: whether each is closed and faces outwards.
+std::vector<std::uint8_t> SolidParts(const FrameModel& frame) {
+  std::vector<const TriangleMesh*> drawn;
+  for (const FramePart& part : frame.parts) {
+    if (IsDrawn(part)) drawn.push_back(&part.mesh);
+  }
+  std::vector<std::uint8_t> solid(drawn.size());
+  tbb::parallel_for(std::size_t(0), drawn.size(), [&](std::size_t i) {
+    const MeshReport report = CheckMesh(*drawn[i], /*find_self_intersections=*/false);
+    solid[i] = report.closed() && report.least_part_mm3 > 0;
+  });
+  return solid;
+}
 
 FrameSurface JoinParts(const Eyewear& eyewear) {
   FrameSurface out;
   out.frame_from_head = eyewear.head_from_frame.inverse();
   for (const FramePart& part : eyewear.frame.parts) {
-    if (part.kind == FramePartKind::kDemoLens || part.mesh.empty()) continue;
+    if (!IsDrawn(part)) continue;
     const TriangleMesh& mesh = part.mesh;
     const Eigen::Vector3i first = Eigen::Vector3i::Constant(int(out.mesh.positions.size()));
     for (const Eigen::Vector3d& p : mesh.positions) {
@@ -47,6 +68,7 @@ FrameSurface JoinParts(const Eyewear& eyewear) {
     out.materials.push_back(part.material);
     out.fades.push_back(part.kind == FramePartKind::kTemple);
   }
+  out.solid = SolidParts(eyewear.frame);
   for (const Eigen::Vector3d& n : out.mesh.normals) out.normals.push_back(n.cast<float>());
   for (const Eigen::Vector3i& t : out.mesh.triangles) {
     double most = 0;
@@ -62,6 +84,22 @@ FrameSurface JoinParts(const Eyewear& eyewear) {
   if (ear_z >= 0) ear_z = -0.7 * eyewear.frame.temple_length_mm;
   out.fade_start_z = kFadeStart * ear_z;
   out.fade_end_z = kFadeEnd * ear_z;
+  return out;
+}
+
+VisibleMesh JoinVisible(const TriangleMesh& face, const TriangleMesh& occluder,
+                        const TriangleMesh& frame) {
+  VisibleMesh out;
+  const auto append = [&out](const TriangleMesh& mesh) {
+    const Eigen::Vector3i first = Eigen::Vector3i::Constant(int(out.vertices.size()));
+    for (const Eigen::Vector3d& p : mesh.positions) out.vertices.push_back(p.cast<float>());
+    for (const Eigen::Vector3i& t : mesh.triangles) out.triangles.push_back(t + first);
+  };
+  append(face);
+  out.first_occluder = out.triangles.size();
+  append(occluder);
+  out.first_frame = out.triangles.size();
+  append(frame);
   return out;
 }
 
@@ -208,6 +246,7 @@ Result<HeadScene> HeadScene::Build(const Eyewear& eyewear, const TriangleMesh& f
   std::vector<Eigen::Vector3f> vertices, normals;
   for (const Eigen::Vector3d& p : smooth_face.positions) vertices.push_back(p.cast<float>());
   for (const Eigen::Vector3d& n : smooth_face.normals) normals.push_back(n.cast<float>());
+  VisibleMesh visible = JoinVisible(smooth_face, occluder, frame.mesh);
   return HeadScene{options,
                    std::move(scene),
                    smooth_face,
@@ -215,6 +254,7 @@ Result<HeadScene> HeadScene::Build(const Eyewear& eyewear, const TriangleMesh& f
                    std::move(normals),
                    smooth_face.triangles,
                    std::move(frame),
+                   std::move(visible),
                    std::move(lenses),
                    std::move(looks),
                    std::move(rim_depth),

@@ -25,8 +25,11 @@ struct FrameSurface {
   std::vector<float> curvature;            // one a triangle: most turn of the normal, 1/mm
   std::vector<FrameMaterial> materials;    // one a part
   std::vector<bool> fades;                 // one a part: a temple
-  std::vector<BlurredEnvironment> gloss;   // the environment under each Phong lobe in use
-  std::vector<std::uint16_t> gloss_of;     // one a part
+  // One a part: a closed surface whose triangles face outwards. No ray from beside it meets one
+  // from behind first.
+  std::vector<std::uint8_t> solid;
+  std::vector<BlurredEnvironment> gloss;  // the environment under each Phong lobe in use
+  std::vector<std::uint16_t> gloss_of;    // one a part
   // Under lobes of exponents 1, 4, 16, 64; where a texture chooses, of 256 and 1024 too.
   std::vector<BlurredEnvironment> lobes;
   // Radiance along a world direction under a lobe, between the two nearest of `lobes`.
@@ -36,6 +39,25 @@ struct FrameSurface {
                              const Eigen::Vector3f& direction) const;
   Eigen::Isometry3d frame_from_head = Eigen::Isometry3d::Identity();
   double fade_start_z = 0, fade_end_z = 0;  // frame coordinates: opaque before, gone after
+};
+
+// All that a camera ray can meet, in one list: face, occluder, frame.
+struct VisibleMesh {
+  std::vector<Eigen::Vector3f> vertices;            // head space, the face's first
+  std::vector<Eigen::Vector3i> triangles;           // as above
+  std::size_t first_occluder = 0, first_frame = 0;  // triangles
+
+  // The triangle as EmbreeScene names it.
+  SceneObject ObjectOf(std::size_t triangle) const {
+    return triangle < first_occluder ? SceneObject::kFace
+           : triangle < first_frame  ? SceneObject::kOccluder
+                                     : SceneObject::kFrame;
+  }
+  std::size_t FirstOf(SceneObject object) const {
+    return object == SceneObject::kFace       ? 0
+           : object == SceneObject::kOccluder ? first_occluder
+                                              : first_frame;
+  }
 };
 
 struct HeadScene {
@@ -50,6 +72,7 @@ struct HeadScene {
   std::vector<Eigen::Vector3f> face_normals;
   std::vector<Eigen::Vector3i> face_triangles;
   FrameSurface frame;
+  VisibleMesh visible;
   std::vector<LensSolid> lenses;  // right, left
   std::vector<LensLook> looks;    // one a lens
   // Depth to which the frame reaches into the glass from the contour, mm; rays that stay farther

@@ -66,7 +66,9 @@ struct TileRange {
 
 TileRange TilesOf(const ScreenBox& box, float margin, const TileMask& mask) {
   const auto tile = [](float v, int low, int high) {
-    return int(std::clamp(std::floor(v / kTileSide), float(low), float(high)));
+    constexpr float kTilesAPixel = 1.0f / kTileSide;
+    // Positive before it is cut to a whole number.
+    return int(std::clamp(v * kTilesAPixel + 1, float(low + 1), float(high + 1))) - 1;
   };
   return {tile(box.x0 - margin, 0, mask.columns), tile(box.y0 - margin, 0, mask.rows),
           tile(box.x1 + margin, -1, mask.columns - 1), tile(box.y1 + margin, -1, mask.rows - 1)};
@@ -104,6 +106,16 @@ class Marks {
         everywhere_ || (head_.baked_shadow && head_.baked_shadow->touched(std::uint32_t(triangle)));
     return shaded ? kTileShadow : 0;
   }
+  // Of a solid part, and seen from behind: clockwise from outside, with y down.
+  bool IsTurnedAway(std::size_t triangle, const std::vector<ScreenPoint>& points) const {
+    if (triangle < head_.visible.first_frame) return false;
+    const FrameSurface& frame = head_.frame;
+    if (!frame.solid[frame.material_of[triangle - head_.visible.first_frame]]) return false;
+    const Eigen::Vector3i& t = head_.visible.triangles[triangle];
+    const ScreenPoint &a = points[std::size_t(t[0])], &b = points[std::size_t(t[1])],
+                      &c = points[std::size_t(t[2])];
+    return (b.x - a.x) * (c.y - a.y) - (b.y - a.y) * (c.x - a.x) > 0;
+  }
 
  private:
   const HeadScene& head_;
@@ -130,6 +142,7 @@ Share Cover(const HeadScene& head, const ScreenScene& screen, std::size_t begin,
       share.complete = share.complete && box.behind;
       continue;
     }
+    if (marks.IsTurnedAway(t, screen.points)) continue;
     ForTiles(TilesOf(box, 0, mask), mask, [&](std::size_t tile) {
       ++share.count[tile];
       share.covers.emplace_back(std::uint32_t(tile), std::uint32_t(t));

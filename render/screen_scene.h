@@ -23,7 +23,7 @@ struct ScreenScene {
   TileMask mask;
   std::vector<ScreenPoint> points;  // one a vertex of HeadScene::visible
   // Those of HeadScene::visible whose boxes meet tile i are triangles[first[i] .. first[i + 1]), in
-  // their order.
+  // their order; of solid parts of the frame the ones that face the camera.
   std::vector<std::uint32_t> first, triangles;
   // False: a triangle lies across the camera's plane, or close to it; the lists are of no use.
   bool complete = true;

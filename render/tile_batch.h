@@ -10,6 +10,7 @@
 
 #include "render/ray_bundle.h"
 #include "render/ray_follower.h"
+#include "render/tile_raster.h"
 
 namespace lorgnette {
 
@@ -33,6 +34,7 @@ enum class BackWay : std::uint8_t {
 };
 
 struct TileBatch {
+  TileRaster raster;
   RayBundle primary;
   std::vector<std::uint8_t>
       lens_of;  // one a sample: 0 none, 1 right, 2 left, 3 to be traced exactly

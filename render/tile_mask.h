@@ -1,14 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
-// Which tiles of a picture can change, from the projections of what is inserted. Internal to
-// render/.
+// The tiles of a picture that can change. Internal to render/.
 #pragma once
 
-#include <Eigen/Geometry>
+#include <cstddef>
 #include <cstdint>
 #include <vector>
 
-#include "base/camera.h"
-#include "render/head_scene.h"
 #include "render/input_picture.h"
 
 namespace lorgnette {
@@ -34,10 +31,5 @@ struct TileMask {
   // Box around the marked tiles, in pixels (it may reach past the picture); empty if none is.
   PixelBox Bounds() const;
 };
-
-// Conservative: no pixel outside marked tiles changes. What lies behind the camera or across its
-// plane marks every tile.
-TileMask MarkTiles(const HeadScene& head, const Camera& camera,
-                   const Eigen::Isometry3d& camera_from_head);
 
 }  // namespace lorgnette

@@ -2,7 +2,6 @@
 #include "render/tile_raster.h"
 
 #include <algorithm>
-#include <cstring>
 #include <limits>
 
 #include "render/tile_raster_job.h"
@@ -38,13 +37,14 @@ HWY_INLINE std::uint32_t Meeting(D d, const Job& job, std::size_t first, float x
   return bits;
 }
 
+HWY_INLINE hn::Vec<D> AreaBy(D d, const Side& side, hn::Vec<D> x, hn::Vec<D> y) {
+  return hn::MulSub(hn::Set(d, side.along_x), hn::Sub(y, hn::Set(d, side.y0)),
+                    hn::Mul(hn::Set(d, side.along_y), hn::Sub(x, hn::Set(d, side.x0))));
+}
+
 void Rasterise(const Job& job) {
   const D d;
   const hn::RebindToUnsigned<D> du;
-  const auto area_of = [&](const Side& side, hn::Vec<D> x, hn::Vec<D> y) HWY_ATTR {
-    return hn::MulSub(hn::Set(d, side.along_x), hn::Sub(y, hn::Set(d, side.y0)),
-                      hn::Mul(hn::Set(d, side.along_y), hn::Sub(x, hn::Set(d, side.x0))));
-  };
   for (std::size_t i = 0; i < job.list_size; ++i) {
     const std::uint32_t triangle = job.list[i];
     const Eigen::Vector3i& t = job.triangles[triangle];
@@ -55,20 +55,21 @@ void Rasterise(const Job& job) {
     const float y0 = std::min({a.y, b.y, c.y}), y1 = std::max({a.y, b.y, c.y});
     const float area = (b.x - a.x) * (c.y - a.y) - (b.y - a.y) * (c.x - a.x);
     if (area == 0) continue;
+    std::uint32_t bits = Meeting(d, job, 0, x0, y0, x1, y1);
+    if (bits == 0 && job.packets <= kPacket) continue;
     const float scale = 1 / area;
     const Side sides[3] = {Side(b, c), Side(c, a), Side(a, b)};
     const auto low_z = hn::Set(d, std::min({a.inverse_z, b.inverse_z, c.inverse_z}));
     const auto high_z = hn::Set(d, std::max({a.inverse_z, b.inverse_z, c.inverse_z}));
     const auto za = hn::Set(d, scale * a.inverse_z), zb = hn::Set(d, scale * b.inverse_z),
                zc = hn::Set(d, scale * c.inverse_z);
-    for (std::size_t group = 0; group < job.packets; group += kPacket) {
-      for (std::uint32_t bits = Meeting(d, job, group, x0, y0, x1, y1); bits != 0;
-           bits &= bits - 1) {
+    for (std::size_t group = 0;;) {
+      for (; bits != 0; bits &= bits - 1) {
         const std::size_t packet = group + std::size_t(__builtin_ctz(bits));
         for (std::size_t k = packet * kPacket; k < (packet + 1) * kPacket; k += hn::Lanes(d)) {
           const auto x = hn::LoadU(d, job.x + k), y = hn::LoadU(d, job.y + k);
-          const auto ea = area_of(sides[0], x, y), eb = area_of(sides[1], x, y),
-                     ec = area_of(sides[2], x, y);
+          const auto ea = AreaBy(d, sides[0], x, y), eb = AreaBy(d, sides[1], x, y),
+                     ec = AreaBy(d, sides[2], x, y);
           const auto zero = hn::Zero(d);
           const auto inside = hn::Or(hn::Ge(hn::Min(hn::Min(ea, eb), ec), zero),
                                      hn::Le(hn::Max(hn::Max(ea, eb), ec), zero));
@@ -77,14 +78,62 @@ void Rasterise(const Job& job) {
           const auto inverse_z = hn::Min(hn::Max(z, low_z), high_z);
           const auto before = hn::LoadU(d, job.inverse_z + k);
           const auto nearer = hn::And(inside, hn::Gt(inverse_z, before));
-          if (hn::AllFalse(d, nearer)) continue;
           hn::StoreU(hn::IfThenElse(nearer, inverse_z, before), d, job.inverse_z + k);
           const auto which = hn::LoadU(du, job.nearest + k);
           hn::StoreU(hn::IfThenElse(hn::RebindMask(du, nearer), hn::Set(du, triangle), which), du,
                      job.nearest + k);
         }
       }
+      group += kPacket;
+      if (group >= job.packets) break;
+      bits = Meeting(d, job, group, x0, y0, x1, y1);
     }
+  }
+}
+
+// Vertices of triangles relative to the tile's corner, a triangle a lane.
+struct Corners {
+  hn::Vec<D> x, y, inverse_z;
+};
+HWY_INLINE Corners Gather(D d, const Job& job, hn::Vec<hn::RebindToSigned<D>> vertex) {
+  static_assert(sizeof(ScreenPoint) == 3 * sizeof(float));
+  const hn::RebindToSigned<D> di;
+  const auto at = hn::Mul(vertex, hn::Set(di, 3));
+  const float* points = &job.points->x;
+  return {hn::Sub(hn::GatherIndex(d, points, at), hn::Set(d, job.corner_x)),
+          hn::Sub(hn::GatherIndex(d, points + 1, at), hn::Set(d, job.corner_y)),
+          hn::GatherIndex(d, points + 2, at)};
+}
+
+HWY_INLINE hn::Vec<D> AreaBy(D, const Corners& p, const Corners& q, hn::Vec<D> x, hn::Vec<D> y) {
+  const auto along_x = hn::Sub(q.x, p.x), along_y = hn::Sub(q.y, p.y);
+  return hn::MulSub(along_x, hn::Sub(y, p.y), hn::Mul(along_y, hn::Sub(x, p.x)));
+}
+
+// Job::u and v: the sample's weights in space.
+void Weigh(const Job& job) {
+  const D d;
+  const hn::RebindToSigned<D> di;
+  static_assert(sizeof(Eigen::Vector3i) == 3 * sizeof(std::int32_t));
+  const std::int32_t* corners = job.triangles->data();
+  for (std::size_t k = 0; k < job.packets * kPacket; k += hn::Lanes(d)) {
+    const auto nearest = hn::LoadU(di, reinterpret_cast<const std::int32_t*>(job.nearest) + k);
+    const auto triangle = hn::Mul(hn::Max(nearest, hn::Zero(di)), hn::Set(di, 3));
+    const Corners a = Gather(d, job, hn::GatherIndex(di, corners, triangle));
+    const Corners b = Gather(d, job, hn::GatherIndex(di, corners + 1, triangle));
+    const Corners c = Gather(d, job, hn::GatherIndex(di, corners + 2, triangle));
+    const auto x = hn::LoadU(d, job.x + k), y = hn::LoadU(d, job.y + k);
+    const auto wa = hn::Mul(AreaBy(d, b, c, x, y), a.inverse_z);
+    const auto wb = hn::Mul(AreaBy(d, c, a, x, y), b.inverse_z);
+    const auto wc = hn::Mul(AreaBy(d, a, b, x, y), c.inverse_z);
+    const auto sum = hn::Add(wa, hn::Add(wb, wc));
+    // The middle of a triangle that rounding leaves without an area.
+    const auto flat = hn::Eq(sum, hn::Zero(d));
+    const auto third = hn::Set(d, 1.0f / 3), zero = hn::Zero(d), one = hn::Set(d, 1.0f);
+    const auto u = hn::Min(hn::Max(hn::Div(wb, sum), zero), one);
+    const auto v = hn::Min(hn::Max(hn::Div(wc, sum), zero), hn::Sub(one, u));
+    hn::StoreU(hn::IfThenElse(flat, third, u), d, job.u + k);
+    hn::StoreU(hn::IfThenElse(flat, third, v), d, job.v + k);
   }
 }
 
@@ -99,22 +148,7 @@ namespace raster {
 namespace {
 
 HWY_EXPORT(Rasterise);
-
-// Weights of a triangle's second and third vertex at a position, as they are in space.
-std::pair<float, float> Weights(const Job& job, const Eigen::Vector3i& t, float x, float y) {
-  const ScreenPoint a = FromCorner(job.points[t[0]], job.corner_x, job.corner_y);
-  const ScreenPoint b = FromCorner(job.points[t[1]], job.corner_x, job.corner_y);
-  const ScreenPoint c = FromCorner(job.points[t[2]], job.corner_x, job.corner_y);
-  const auto area_of = [&](const Side& side) {
-    return side.along_x * (y - side.y0) - side.along_y * (x - side.x0);
-  };
-  const float wa = area_of(Side(b, c)) * a.inverse_z, wb = area_of(Side(c, a)) * b.inverse_z,
-              wc = area_of(Side(a, b)) * c.inverse_z;
-  const float sum = wa + wb + wc;
-  if (sum == 0) return {1.0f / 3, 1.0f / 3};
-  const float u = std::clamp(wb / sum, 0.0f, 1.0f);
-  return {u, std::clamp(wc / sum, 0.0f, 1 - u)};
-}
+HWY_EXPORT(Weigh);
 
 }  // namespace
 }  // namespace raster
@@ -131,25 +165,27 @@ void TileRaster::Trace(const VisibleMesh& mesh, const ScreenScene& screen, std::
   job.corner_y = float(int(tile) / screen.mask.columns * kTileSide);
   job.packets = (n + kPacket - 1) / kPacket;
   const std::size_t filled = job.packets * kPacket;
-  x_.resize(filled);
-  y_.resize(filled);
-  for (std::size_t i = 0; i < filled; ++i) {
-    const CameraSample& s = samples[std::min(i, n - 1)];
-    x_[i] = s.x - job.corner_x;
-    y_[i] = s.y - job.corner_y;
-  }
+  for (std::vector<float>* column : {&x_, &y_, &u_, &v_}) column->resize(filled);
   const std::size_t boxes = (job.packets + kPacket - 1) / kPacket * kPacket;
   constexpr float kEmpty = std::numeric_limits<float>::infinity();
   low_x_.assign(boxes, kEmpty);
   low_y_.assign(boxes, kEmpty);
   high_x_.assign(boxes, -kEmpty);
   high_y_.assign(boxes, -kEmpty);
-  for (std::size_t i = 0; i < filled; ++i) {
-    const std::size_t packet = i / kPacket;
-    low_x_[packet] = std::min(low_x_[packet], x_[i]);
-    low_y_[packet] = std::min(low_y_[packet], y_[i]);
-    high_x_[packet] = std::max(high_x_[packet], x_[i]);
-    high_y_[packet] = std::max(high_y_[packet], y_[i]);
+  for (std::size_t packet = 0; packet < job.packets; ++packet) {
+    Eigen::Array2f low = Eigen::Array2f::Constant(kEmpty), high = -low;
+    for (std::size_t i = packet * kPacket; i < (packet + 1) * kPacket; ++i) {
+      const CameraSample& s = samples[std::min(i, n - 1)];
+      const Eigen::Array2f at(s.x - job.corner_x, s.y - job.corner_y);
+      x_[i] = at.x();
+      y_[i] = at.y();
+      low = low.min(at);
+      high = high.max(at);
+    }
+    low_x_[packet] = low.x();
+    low_y_[packet] = low.y();
+    high_x_[packet] = high.x();
+    high_y_[packet] = high.y();
   }
   inverse_z_.assign(filled, 0);
   nearest_.assign(filled, raster::kNothing);
@@ -165,13 +201,16 @@ void TileRaster::Trace(const VisibleMesh& mesh, const ScreenScene& screen, std::
   job.high_y = high_y_.data();
   job.inverse_z = inverse_z_.data();
   job.nearest = nearest_.data();
+  job.u = u_.data();
+  job.v = v_.data();
   HWY_DYNAMIC_DISPATCH(raster::Rasterise)(job);
+  HWY_DYNAMIC_DISPATCH(raster::Weigh)(job);
   for (std::size_t i = 0; i < n; ++i) {
     const std::uint32_t triangle = nearest_[i];
     if (triangle == raster::kNothing) continue;
-    const auto [u, v] = raster::Weights(job, mesh.triangles[triangle], x_[i], y_[i]);
     const SceneObject object = mesh.ObjectOf(triangle);
-    hits[i] = {object, triangle - std::uint32_t(mesh.FirstOf(object)), 1 / inverse_z_[i], u, v};
+    hits[i] = {object, triangle - std::uint32_t(mesh.FirstOf(object)), 1 / inverse_z_[i], u_[i],
+               v_[i]};
   }
 }
 

@@ -27,7 +27,7 @@ class TileRaster {
  private:
   // Packets of 16 samples, the last one filled up; boxes of packets, filled up to 16 with boxes
   // that hold nothing.
-  std::vector<float> x_, y_, low_x_, low_y_, high_x_, high_y_;
+  std::vector<float> x_, y_, u_, v_, low_x_, low_y_, high_x_, high_y_;
   std::vector<float> inverse_z_;
   std::vector<std::uint32_t> nearest_;
 };

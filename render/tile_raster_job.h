@@ -22,8 +22,9 @@ struct Job {
   std::size_t packets;
   const float *x, *y;                            // of samples
   const float *low_x, *low_y, *high_x, *high_y;  // boxes, a packet each, filled up to 16
-  float* inverse_z;                              // one a sample: the nearest so far
-  std::uint32_t* nearest;                        // ... and its triangle
+  float* inverse_z;                              // one a sample: of the nearest so far, or 0
+  std::uint32_t* nearest;                        // its triangle, or kNothing
+  float *u, *v;  // weights of its second and third vertex, where there is one
 };
 
 // A vertex relative to the tile's corner.
@@ -37,14 +38,12 @@ inline ScreenPoint FromCorner(const ScreenPoint& p, float corner_x, float corner
 struct Side {
   float x0, y0, along_x, along_y;
   Side(const ScreenPoint& p, const ScreenPoint& q) {
-    const bool ordered = p.y < q.y || (p.y == q.y && p.x < q.x);
-    const ScreenPoint& from = ordered ? p : q;
-    const ScreenPoint& to = ordered ? q : p;
-    const float sign = ordered ? 1.0f : -1.0f;
-    x0 = from.x;
-    y0 = from.y;
-    along_x = sign * (to.x - from.x);
-    along_y = sign * (to.y - from.y);
+    // Without a branch: which end comes first is a toss-up.
+    const bool ordered = (p.y < q.y) | ((p.y == q.y) & (p.x < q.x));
+    x0 = ordered ? p.x : q.x;
+    y0 = ordered ? p.y : q.y;
+    along_x = q.x - p.x;
+    along_y = q.y - p.y;
   }
 };
 

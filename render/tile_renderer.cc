@@ -11,25 +11,31 @@
 
 namespace lorgnette {
 
-TileRenderer::TileRenderer(const HeadScene& head, const RayFollower& follower, const Camera& camera,
+TileRenderer::TileRenderer(const HeadScene& head, const RayFollower& follower,
+                           const ScreenScene& screen, const Camera& camera,
                            const Eigen::Isometry3d& camera_from_head)
     : head_(head),
       follower_(follower),
+      screen_(screen),
       camera_(camera),
       head_from_camera_(camera_from_head.rotation().transpose().cast<float>()),
       eye_(camera_from_head.inverse().translation()) {}
 
-void TileRenderer::TracePrimary(RaySet set, TileBatch& batch,
-                                std::vector<CameraSample>& samples) const {
+void TileRenderer::TracePrimary(std::size_t tile, const std::vector<CameraSample>& samples,
+                                TileBatch& batch) const {
   const Eigen::Vector3f eye = eye_.cast<float>();
   const float inverse_fx = float(1 / camera_.fx), inverse_fy = float(1 / camera_.fy);
+  if (screen_.complete)
+    batch.raster.Trace(head_.visible, screen_, tile, samples, batch.primary.hits);
   batch.primary.Clear();
-  for (const CameraSample& s : samples) {
-    const Eigen::Vector3f d((s.x - float(camera_.cx)) * inverse_fx,
-                            (s.y - float(camera_.cy)) * inverse_fy, 1);
-    batch.primary.Add(eye, (head_from_camera_ * d).normalized());
+  for (std::size_t i = 0; i < samples.size(); ++i) {
+    const Eigen::Vector3f d((samples[i].x - float(camera_.cx)) * inverse_fx,
+                            (samples[i].y - float(camera_.cy)) * inverse_fy, 1);
+    const float length = d.norm();
+    batch.primary.Add(eye, head_from_camera_ * (d / length));
+    if (screen_.complete) batch.primary.hits[i].distance *= length;
   }
-  batch.primary.Trace(head_.scene, set);
+  if (!screen_.complete) batch.primary.Trace(head_.scene, RaySet::kAll);
 }
 
 void TileRenderer::Direct(std::size_t i, const TileBatch& batch, std::vector<CameraSample>& samples,
@@ -129,12 +135,11 @@ void TileRenderer::TraceExactly(std::size_t i, const TileBatch& batch,
   pixel.band = 0;
 }
 
-void TileRenderer::Trace(std::vector<CameraSample>& samples, std::uint8_t content,
+void TileRenderer::Trace(std::size_t tile, std::vector<CameraSample>& samples,
                          std::vector<PixelState>& pixels) const {
   thread_local TileBatch batch;
-  // A straight ray meets the frame in its tiles only.
-  const RaySet set = content & kTileFrame ? RaySet::kAll : RaySet::kHead;
-  TracePrimary(set, batch, samples);
+  const std::uint8_t content = screen_.mask.content[tile];
+  TracePrimary(tile, samples, batch);
   batch.lens_of.assign(samples.size(), 0);
   const std::uint8_t lens_bits[2] = {kTileRightLens, kTileLeftLens};
   for (std::size_t lens = 0; lens < head_.lenses.size(); ++lens) {

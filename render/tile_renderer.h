@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// Samples of a tile, in batches: primary rays and what leaves the glass in packets of 16, lenses by
-// the SIMD kernel; what meets a lens's edge goes the exact way of RayFollower. Internal to render/.
+// Samples of a tile, in batches: camera rays by rasterisation, lenses by the SIMD kernel, what
+// leaves the glass in packets of 16; what meets a lens's edge goes the exact way of RayFollower.
+// Internal to render/.
 #pragma once
 
 #include <Eigen/Geometry>
@@ -9,7 +10,7 @@
 
 #include "render/camera_sample.h"
 #include "render/ray_follower.h"
-#include "render/tile_mask.h"
+#include "render/screen_scene.h"
 
 namespace lorgnette {
 
@@ -17,16 +18,19 @@ struct TileBatch;
 
 class TileRenderer {
  public:
-  TileRenderer(const HeadScene& head, const RayFollower& follower, const Camera& camera,
-               const Eigen::Isometry3d& camera_from_head);
+  // All have to outlive it.
+  //   screen  `head` as `camera` sees it
+  TileRenderer(const HeadScene& head, const RayFollower& follower, const ScreenScene& screen,
+               const Camera& camera, const Eigen::Isometry3d& camera_from_head);
 
-  // Traces the samples. Neighbours in the list should be neighbours in the picture.
-  //   content  TileContent bits of the tile that holds them all
-  void Trace(std::vector<CameraSample>& samples, std::uint8_t content,
+  // Traces samples of one tile. Neighbours in the list should be neighbours in the picture.
+  void Trace(std::size_t tile, std::vector<CameraSample>& samples,
              std::vector<PixelState>& pixels) const;
 
  private:
-  void TracePrimary(RaySet set, TileBatch& batch, std::vector<CameraSample>& samples) const;
+  // Fills batch.primary.
+  void TracePrimary(std::size_t tile, const std::vector<CameraSample>& samples,
+                    TileBatch& batch) const;
   void TraceGloss(TileBatch& batch, const std::vector<CameraSample>& samples,
                   std::vector<PixelState>& pixels) const;
   void TraceExactly(std::size_t sample, const TileBatch& batch, std::vector<CameraSample>& samples,
@@ -36,6 +40,7 @@ class TileRenderer {
 
   const HeadScene& head_;
   const RayFollower& follower_;
+  const ScreenScene& screen_;
   Camera camera_;
   Eigen::Matrix3f head_from_camera_;
   Eigen::Vector3d eye_;

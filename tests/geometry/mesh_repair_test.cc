@@ -84,6 +84,21 @@ TEST(RepairMesh, TurnsAPieceThatIsInsideOut) {
   EXPECT_EQ(mesh.normals, Box(2).normals);
 }
 
+TEST(CheckMesh, TellsWhetherAnyPieceFacesInwards) {
+  TriangleMesh mesh = Box(2), inverted = Box(2);
+  for (Eigen::Vector3d& p : inverted.positions) p = 0.5 * p + Eigen::Vector3d(40, 0, 0);
+  TriangleMesh both = mesh;
+  Append(both, inverted);
+  EXPECT_NEAR(CheckMesh(both, false).least_part_mm3, kBoxVolume / 8, 1e-9);
+  for (Eigen::Vector3i& t : inverted.triangles) std::swap(t[1], t[2]);
+  Append(mesh, inverted);
+  const MeshReport report = CheckMesh(mesh, false);
+  EXPECT_TRUE(report.closed());
+  EXPECT_EQ(report.components, 2);
+  EXPECT_GT(report.volume_mm3, 0);
+  EXPECT_NEAR(report.least_part_mm3, -kBoxVolume / 8, 1e-9);
+}
+
 TEST(RepairMesh, KeepsALargeOpeningAndCountsItsEdges) {
   TriangleMesh mesh = Box(4);
   std::erase_if(mesh.triangles, [&](const Eigen::Vector3i& t) {
