@@ -17,9 +17,7 @@ constexpr float kShadowContrast = 0.02f;
 
 void PlaceSamples(const PixelBox& area, int side, const PixelFlags* wanted,
                   std::vector<CameraSample>& samples) {
-  const std::size_t each = std::size_t(side) * std::size_t(side);
-  samples.resize(PixelFlags().size() * each);
-  CameraSample* next = samples.data();
+  samples.clear();
   const int block = std::max(1, 4 / side);
   const float step = 1 / float(side);
   for (int by = area.y0; by < area.y1; by += block) {
@@ -30,18 +28,16 @@ void PlaceSamples(const PixelBox& area, int side, const PixelFlags* wanted,
           if (wanted != nullptr && !(*wanted)[pixel]) continue;
           for (int row = 0; row < side; ++row) {
             for (int column = 0; column < side; ++column) {
-              *next = CameraSample{};
-              next->x = float(x) + (float(column) + 0.5f) * step;
-              next->y = float(y) + (float(row) + 0.5f) * step;
-              next->pixel = std::uint16_t(pixel);
-              ++next;
+              CameraSample& sample = samples.emplace_back();
+              sample.x = float(x) + (float(column) + 0.5f) * step;
+              sample.y = float(y) + (float(row) + 0.5f) * step;
+              sample.pixel = std::uint16_t(pixel);
             }
           }
         }
       }
     }
   }
-  samples.resize(std::size_t(next - samples.data()));
 }
 
 PixelFlags PixelsToRefine(const PixelBox& area, const PixelBox& box,

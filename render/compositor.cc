@@ -2,6 +2,7 @@
 #include "render/compositor.h"
 
 #include <tbb/parallel_for.h>
+#include <tbb/task_group.h>
 
 #include <algorithm>
 #include <cmath>
@@ -157,17 +158,28 @@ ImageRgbF Compositor::Render(const ImageRgbF& input, const Camera& camera,
 ImageRgb8 Compositor::Render(const ImageRgb8& input, const Camera& camera,
                              const Eigen::Isometry3d& camera_from_head, RenderCounts* counts,
                              const PictureEffects* effects) const {
-  return DrawDisplay(
-      input, Sit(input, camera, camera_from_head),
-      effects != nullptr ? *effects : PictureEffects::Of(scene_->head.options.effects), counts);
+  ImageRgb8 output;
+  tbb::task_group copying;
+  copying.run([&] { output = input; });
+  const Sitting sitting = Sit(input, camera, camera_from_head);
+  copying.wait();
+  DrawDisplay(sitting,
+              effects != nullptr ? *effects : PictureEffects::Of(scene_->head.options.effects),
+              counts, output);
+  return output;
 }
 
 ImageRgb8 Compositor::Render(const ImageRgb8& input, const Camera& camera,
                              const Eigen::Isometry3d& camera_from_head, const EffectChoice& choice,
                              EffectPlan& plan, RenderCounts* counts) const {
+  ImageRgb8 output;
+  tbb::task_group copying;
+  copying.run([&] { output = input; });
   const Sitting sitting = Sit(input, camera, camera_from_head);
   plan = PlanEffects(scene_->head, sitting.view, sitting.input, camera, camera_from_head, choice);
-  return DrawDisplay(input, sitting, plan.effects, counts);
+  copying.wait();
+  DrawDisplay(sitting, plan.effects, counts, output);
+  return output;
 }
 
 void Compositor::DrawLinear(const Sitting& sitting, const PictureEffects& effects,
@@ -190,29 +202,27 @@ void Compositor::DrawLinear(const Sitting& sitting, const PictureEffects& effect
   ApplyCameraLook(scene_->head.options.camera_look, frame_share, seed, x0, y0, picture);
 }
 
-ImageRgb8 Compositor::DrawDisplay(const ImageRgb8& input, const Sitting& sitting,
-                                  const PictureEffects& effects, RenderCounts* counts) const {
-  ImageRgb8 output = input;
+void Compositor::DrawDisplay(const Sitting& sitting, const PictureEffects& effects,
+                             RenderCounts* counts, ImageRgb8& output) const {
   if (!effects.rest[Effect::kGrain]) {
     Canvas canvas(output);
     const RenderCounts met = Draw(sitting, effects, canvas);
     if (counts != nullptr) *counts = met;
-    return output;
+    return;
   }
   // Blur and grain work in linear light, on the part that changes.
   const int border = CameraLookReach(scene_->head.options.camera_look);
   const PixelBox box =
-      Clipped(Grown(sitting.screen.mask.Bounds(), border), input.width, input.height);
-  if (box.empty()) return output;
+      Clipped(Grown(sitting.screen.mask.Bounds(), border), output.width, output.height);
+  if (box.empty()) return;
   ImageRgbF part(box.x1 - box.x0, box.y1 - box.y0);
   tbb::parallel_for(0, part.height, [&](int y) {
-    LinearFromCodes(input.at(box.x0, box.y0 + y), 3 * std::size_t(part.width), part.at(0, y));
+    LinearFromCodes(output.at(box.x0, box.y0 + y), 3 * std::size_t(part.width), part.at(0, y));
   });
   DrawLinear(sitting, effects, counts, part, box.x0, box.y0);
   tbb::parallel_for(0, part.height, [&](int y) {
     CodesFromLinear(part.at(0, y), 3 * std::size_t(part.width), output.at(box.x0, box.y0 + y));
   });
-  return output;
 }
 
 RenderCounts Compositor::Draw(const Sitting& sitting, const PictureEffects& effects,

@@ -132,8 +132,9 @@ class Compositor {
               const Eigen::Isometry3d& camera_from_head) const;
   void DrawLinear(const Sitting& sitting, const PictureEffects& effects, RenderCounts* counts,
                   ImageRgbF& picture, int x0, int y0) const;
-  ImageRgb8 DrawDisplay(const ImageRgb8& input, const Sitting& sitting,
-                        const PictureEffects& effects, RenderCounts* counts) const;
+  // Into a copy of the input.
+  void DrawDisplay(const Sitting& sitting, const PictureEffects& effects, RenderCounts* counts,
+                   ImageRgb8& output) const;
   RenderCounts Draw(const Sitting& sitting, const PictureEffects& effects, Canvas& canvas) const;
   explicit Compositor(std::unique_ptr<Scene> scene);
   std::unique_ptr<Scene> scene_;

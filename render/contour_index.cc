@@ -210,6 +210,7 @@ std::optional<ContourIndex::Crossing> ContourIndex::FirstCrossing(const Eigen::V
                                                                   double t_min,
                                                                   double t_max) const {
   const std::size_t n = polygon_.size();
+  const Eigen::Vector2d inverse = d.cwiseInverse();
   // The part of the line inside the box around the polygon.
   double t = t_min, end = t_max;
   const double margin = 1e-6 * cell_;
@@ -219,10 +220,11 @@ std::optional<ContourIndex::Crossing> ContourIndex::FirstCrossing(const Eigen::V
       if (low > 0 || high < 0) return std::nullopt;
       continue;
     }
-    t = std::max(t, std::min(low / d[k], high / d[k]));
-    end = std::min(end, std::max(low / d[k], high / d[k]));
+    const double a = low * inverse[k], b = high * inverse[k];
+    t = std::max(t, std::min(a, b));
+    end = std::min(end, std::max(a, b));
   }
-  const double a_cell = cell_ / d.norm();
+  const double a_millimetre = 1 / d.norm(), a_cell = cell_ * a_millimetre;
   double best = t_max, best_s = 0;
   std::size_t best_edge = n;
   // From cell to cell, and past what is free of edges at once.
@@ -230,27 +232,27 @@ std::optional<ContourIndex::Crossing> ContourIndex::FirstCrossing(const Eigen::V
     const Eigen::Vector2d at = p + t * d;
     const std::size_t cell = CellOf(at.x(), at.y());
     const double free = std::abs(double(distance_[cell])) - half_diagonal_;
+    if (free > half_diagonal_) {
+      t += free * a_millimetre;
+      continue;
+    }
     const Eigen::Vector2i place(int(cell % std::size_t(columns_)),
                                 int(cell / std::size_t(columns_)));
     double leave = std::numeric_limits<double>::infinity();
     for (int k = 0; k < 2; ++k) {
       if (d[k] == 0) continue;
       const double border = grid_low_[k] + cell_ * (place[k] + (d[k] > 0 ? 1 : 0));
-      leave = std::min(leave, (border - p[k]) / d[k]);
+      leave = std::min(leave, (border - p[k]) * inverse[k]);
     }
     constexpr double kLeastStep = 1e-9;  // cells: past a border, whatever is rounded
     leave = std::max(leave, t) + kLeastStep * a_cell;
-    if (free > 0) {
-      t = std::max(leave, t + free * inverse_cell_ * a_cell);
-      continue;
-    }
     for (std::size_t k = cell_first_[cell]; k < cell_first_[cell + 1]; ++k) {
       const std::size_t i = cell_edges_[k], j = i + 1 == n ? 0 : i + 1;
       const double before = Cross(d, polygon_[i] - p), after = Cross(d, polygon_[j] - p);
       if ((before > 0) == (after > 0)) continue;
       const double s = before / (before - after);
       const Eigen::Vector2d crossing = polygon_[i] + s * (polygon_[j] - polygon_[i]);
-      const double met = (crossing - p).dot(d) / d.squaredNorm();
+      const double met = (crossing - p).dot(d) * (a_millimetre * a_millimetre);
       if (met > t_min && met < best) {
         best = met;
         best_s = s;

@@ -154,9 +154,10 @@ Eigen::Vector3f FrameSurface::GlossAt(float exponent, const Eigen::Vector3f& dir
 
 Eigen::Vector3f FrameSurface::OwnGlossAt(std::size_t part, float exponent,
                                          const Eigen::Vector3f& direction) const {
-  const Eigen::Vector3f own = gloss[gloss_of[part]].Radiance(direction);
   // One octave to go over from the part's own table to those of all.
   const float share = std::min(std::log2(float(materials[part].shininess) / exponent), 1.0f);
+  if (share >= 1) return GlossAt(exponent, direction);
+  const Eigen::Vector3f own = gloss[gloss_of[part]].Radiance(direction);
   return share > 0 ? Eigen::Vector3f((1 - share) * own + share * GlossAt(exponent, direction))
                    : own;
 }

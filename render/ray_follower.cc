@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "render/ray_follower.h"
 
+#include <tbb/parallel_invoke.h>
+
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -84,9 +86,13 @@ RayFollower::RayFollower(const HeadScene& head, const PictureView& picture, cons
   frame_z_ = head.frame.frame_from_head.matrix().row(2).cast<float>();
   const HeadLight light =
       LightAt(head.directions, head.cells, world_from_head_, float(head.options.environment_scale));
-  if (head.baked_shadow && effects.rest[Effect::kShadow])
-    ratios_ = head.baked_shadow->Relight(light);
-  frame_irradiance_ = head.frame_light.Relight(light, picture_.face_mean());
+  tbb::parallel_invoke(
+      [&] {
+        if (head.baked_shadow && effects.rest[Effect::kShadow]) {
+          ratios_ = head.baked_shadow->Relight(light);
+        }
+      },
+      [&] { frame_irradiance_ = head.frame_light.Relight(light, picture_.face_mean()); });
   lenses_overlap_ = LensesOverlap(head, camera, camera_from_head);
   if (head.gather_lattice && effects.rest[Effect::kShadow]) {
     GatherScene gather{head.scene, head.face, head.directions, light, picture_.vertex_colours(),
