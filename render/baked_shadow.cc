@@ -2,6 +2,7 @@
 #include <tbb/parallel_for.h>
 
 #include <algorithm>
+#include <atomic>
 #include <bit>
 #include <cmath>
 #include <limits>
@@ -192,13 +193,16 @@ std::size_t BakedShadow::Follow(const EmbreeScene& scene,
     });
     moved.erase(last, moved.end());
   }
+  std::atomic<bool> other_buried = false;
   tbb::parallel_for(std::size_t(0), moved.size(), [&](std::size_t k) {
     Touched& point = touched_[moved[k].touched];
     LatticePoint at = lattice_.points()[point.point];
     at.position = point.baked_at = moved[k].to;
+    const bool buried = point.lists.buried;
     point.lists = ListBlocked(scene, sphere_, at, sees_face_);
+    if (point.lists.buried != buried) other_buried = true;
   });
-  if (!moved.empty()) FindNeighbours();
+  if (other_buried) FindNeighbours();
   return moved.size();
 }
 

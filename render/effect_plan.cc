@@ -2,6 +2,8 @@
 #include "render/effect_plan.h"
 
 #include <fmt/format.h>
+#include <tbb/parallel_for.h>
+#include <tbb/parallel_invoke.h>
 
 #include <algorithm>
 #include <cmath>
@@ -348,10 +350,18 @@ EffectPlan PlanEffects(const HeadScene& head, const PictureView& view, const Inp
                        const EffectChoice& choice) {
   const Surveyor surveyor(head, view, input, camera, camera_from_head);
   EffectPlan plan;
+  std::vector<LensSurvey> surveys(head.lenses.size());
+  // What the face shows is read beside: the decisions below ask for it.
+  tbb::parallel_invoke(
+      [&] {
+        tbb::parallel_for(std::size_t(0), surveys.size(),
+                          [&](std::size_t lens) { surveys[lens] = surveyor.Survey(lens); });
+      },
+      [&] { view.face_brightest(); });
   const double samples =
       double(head.options.samples_per_side) * double(head.options.samples_per_side);
   for (std::size_t lens = 0; lens < head.lenses.size(); ++lens) {
-    const LensSurvey s = surveyor.Survey(lens);
+    const LensSurvey& s = surveys[lens];
     const EffectRegion region = lens == 0 ? EffectRegion::kRightLens : EffectRegion::kLeftLens;
     const double lens_px = double(s.visible) * s.share_px;
     const double ray_ms = 1e-6 * samples * lens_px * kRay_ns;

@@ -3,6 +3,7 @@
 
 #include <embree3/rtcore.h>
 #include <fmt/format.h>
+#include <tbb/parallel_invoke.h>
 
 #include <cstring>
 #include <limits>
@@ -151,9 +152,15 @@ void EmbreeScene::MoveFace(const std::vector<Eigen::Vector3f>& vertices) {
   }
   rtcUpdateGeometryBuffer(geometry, RTC_BUFFER_TYPE_VERTEX, 0);
   rtcCommitGeometry(geometry);
-  rtcCommitScene(state_->scene(RaySet::kAll));
-  rtcCommitScene(state_->scene(RaySet::kHead));
-  rtcCommitScene(state_->occluder(RaySet::kHead));
+  // A scene of its own for occlusion pays in the bake of a whole face, not with a few points a
+  // frame.
+  RTCScene& occluder = state_->occlusion[std::size_t(RaySet::kHead)];
+  if (const RTCScene head = state_->scene(RaySet::kHead); occluder != head) {
+    rtcReleaseScene(occluder);
+    occluder = head;
+  }
+  tbb::parallel_invoke([&] { rtcCommitScene(state_->scene(RaySet::kAll)); },
+                       [&] { rtcCommitScene(state_->scene(RaySet::kHead)); });
 }
 
 SceneHit EmbreeScene::Intersect(RaySet set, const Eigen::Vector3f& origin,

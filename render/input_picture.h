@@ -47,8 +47,9 @@ class InputPicture {
   // Any pixel inside the picture.
   Eigen::Vector3f Pixel(int x, int y) const {
     if (IsReady(x, y, x + 1, y + 1)) return Eigen::Map<const Eigen::Vector3f>(Ready(x, y));
-    const std::uint8_t* codes = display_->at(x, y);
-    return {LinearFromCode(codes[0]), LinearFromCode(codes[1]), LinearFromCode(codes[2])};
+    Eigen::Vector3f light;
+    LinearFromCodes(display_->at(x, y), 3, light.data());
+    return light;
   }
   // The greatest value of each channel.
   Eigen::Vector3f Brightest() const;

@@ -124,8 +124,10 @@ void LensPass::SortOut() {
     const Eigen::Vector3f p1 = batch_.first.point(k), p2 = batch_.inside.point(k);
     const ContourIndex::Place at1 = contour.Locate(double(p1.x()), double(p1.y()));
     const ContourIndex::Place at2 = contour.Locate(double(p2.x()), double(p2.y()));
-    const bool through =
-        batch_.status[k] == std::uint8_t(RayStatus::kOk) && at1.inside && at2.inside;
+    const auto status = RayStatus(batch_.status[k]);
+    const bool inside = at1.inside && at2.inside;
+    const bool through = status == RayStatus::kOk && inside;
+    const bool total = status == RayStatus::kTotalInternalReflection && inside;
     const float entry = shift_ + (p1 - batch_.in.point(k)).norm();
     const SceneHit& hit = batch_.primary.hits[i];
     const bool forward = batch_.in.columns[5][k] > 0;
@@ -134,7 +136,9 @@ void LensPass::SortOut() {
                            hit.object == SceneObject::kFrame && at1.clearance < bevel &&
                            double(hit.distance) < double(entry) + bevel;
     if (in_groove) continue;
-    if (!through || batch_.lens_of[i] != 0 || !forward) {
+    const std::optional<float> to_wall =
+        through || total || !forward ? std::nullopt : WayToWall(k, at1, at2);
+    if ((!through && !total && !to_wall) || batch_.lens_of[i] != 0 || !forward) {
       batch_.lens_of[i] = 3;
       continue;
     }
@@ -143,16 +147,34 @@ void LensPass::SortOut() {
     LensRay r;
     r.sample = i;
     r.ray = std::uint32_t(k);
-    r.near_rim = at1.clearance < rim_depth_ || at2.clearance < rim_depth_;
+    r.near_rim = to_wall || at1.clearance < rim_depth_ || at2.clearance < rim_depth_;
+    r.way = to_wall ? LensWay::kToWall : total ? LensWay::kTotal : LensWay::kThrough;
+    r.inside_mm = to_wall.value_or((p2 - p1).norm());
     r.first_point = p1;
     r.first_normal = batch_.first.vector(k);
     r.inside = batch_.inside.vector(k);
-    r.second_point = p2;
+    r.second_point = to_wall ? Eigen::Vector3f(p1 + *to_wall * r.inside) : p2;
     r.second_normal = batch_.second.vector(k);
     r.exit = batch_.exit.vector(k);
     Share(batch_.enter[k], batch_.leave[k], batch_.in.vector(k), r);
     batch_.regular.push_back(r);
   }
+}
+
+std::optional<float> LensPass::WayToWall(std::size_t k, const ContourIndex::Place& at1,
+                                         const ContourIndex::Place& at2) const {
+  const std::uint8_t status = batch_.status[k];
+  const bool known = status == std::uint8_t(RayStatus::kOk) ||
+                     status == std::uint8_t(RayStatus::kTotalInternalReflection);
+  if (!known || !at1.inside || at2.inside || head_.options.finish.edge != EdgeFinish::kGround) {
+    return std::nullopt;
+  }
+  const Eigen::Vector3f from = batch_.first.point(k), along = batch_.inside.vector(k);
+  const auto crossing =
+      solid_.contour().FirstCrossing(from.head<2>().cast<double>(), along.head<2>().cast<double>(),
+                                     0, double((batch_.inside.point(k) - from).norm()));
+  if (!crossing) return std::nullopt;
+  return float(crossing->t);
 }
 
 void LensPass::Share(float enter, float leave, const Eigen::Vector3f& direction, LensRay& r) const {
@@ -180,8 +202,8 @@ void LensPass::Share(float enter, float leave, const Eigen::Vector3f& direction,
       look_.tint.clear() ? first.passed
                          : first.passed.cwiseProduct(look_.tint.Between(
                                r.first_point.cast<double>(), r.second_point.cast<double>()));
-  r.through = inside.cwiseProduct(second.passed);
-  r.back = inside.cwiseProduct(second.reflected);
+  r.through = r.way == LensWay::kToWall ? inside : inside.cwiseProduct(second.passed);
+  r.back = r.way == LensWay::kTotal ? inside : inside.cwiseProduct(second.reflected);
 }
 
 void LensPass::Divide() {
@@ -189,8 +211,7 @@ void LensPass::Divide() {
   batch_.rim.Clear();
   for (const LensRay& r : batch_.regular) {
     if (!r.near_rim) continue;
-    batch_.rim.Add(ToHead(r.first_point), head_from_lens_ * r.inside,
-                   (r.second_point - r.first_point).norm());
+    batch_.rim.Add(ToHead(r.first_point), head_from_lens_ * r.inside, r.inside_mm);
   }
   batch_.rim.Trace(head_.scene, RaySet::kFrame);
 
@@ -201,6 +222,7 @@ void LensPass::Divide() {
   batch_.front_of.clear();
   batch_.back_of.clear();
   std::size_t rim_next = 0;
+  const Eigen::Vector3f ground = follower_.GroundEdge();
   for (std::size_t k = 0; k < batch_.regular.size(); ++k) {
     LensRay& r = batch_.regular[k];
     CameraSample& sample = samples_[r.sample];
@@ -221,6 +243,16 @@ void LensPass::Divide() {
             r.entered.cwiseProduct(follower_.Frame(hit, point, in_glass, follower_.EndAt(hit)));
         continue;
       }
+    }
+    if (r.way == LensWay::kTotal) {
+      sample.kind = CameraSample::Kind::kLensElsewhere;
+      batch_.back_of.push_back(std::uint32_t(k));
+      continue;
+    }
+    if (r.way == LensWay::kToWall) {
+      sample.kind = CameraSample::Kind::kLensElsewhere;
+      sample.inserted += r.through.cwiseProduct(ground);
+      continue;
     }
     batch_.main_of.push_back(std::uint32_t(k));
     batch_.main.Add(ToHead(r.second_point), head_from_lens_ * r.exit);
@@ -252,8 +284,11 @@ void LensPass::SendBack() {
   // surface bends into its way. On its way there, or to the front near the rim, it may meet the
   // frame.
   const bool ground = head_.options.finish.edge == EdgeFinish::kGround &&
-                      solid_.back_bulges_inward() && look_.tint.clear() &&
-                      follower_.effects(lens_)[Effect::kRings];
+                      solid_.back_bulges_inward() && look_.tint.clear();
+  // Total reflection is no effect of its own: there is nothing else that the ray could do.
+  const auto shows_edge = [&](const LensRay& r) {
+    return follower_.effects(lens_)[Effect::kRings] || r.way == LensWay::kTotal;
+  };
   batch_.rim.Clear();
   batch_.back_way.clear();
   for (std::size_t j = 0; j < m; ++j) {
@@ -272,7 +307,8 @@ void LensPass::SendBack() {
       continue;
     }
     batch_.back_way.push_back(BackWay::kExact);
-    if (!ground || at.inside || batch_.back_status[j] == std::uint8_t(RayStatus::kMissesSurface)) {
+    if (!ground || !shows_edge(batch_.regular[batch_.back_of[j]]) || at.inside ||
+        batch_.back_status[j] == std::uint8_t(RayStatus::kMissesSurface)) {
       continue;
     }
     const auto crossing = solid_.contour().FirstCrossing(from.head<2>().cast<double>(),
@@ -307,7 +343,7 @@ void LensPass::SendBack() {
       sample.inserted += weight.cwiseProduct(wall);
     } else if (way == BackWay::kExact) {
       const double most = double(weight.maxCoeff());
-      if (most < head_.options.least_weight || !follower_.effects(lens_)[Effect::kRings]) continue;
+      if (most < head_.options.least_weight || !shows_edge(r)) continue;
       const Ray chain{r.second_point.cast<double>(),
                       batch_.back_in.vector(j).cast<double>().normalized()};
       sample.inserted +=
@@ -317,7 +353,7 @@ void LensPass::SendBack() {
         weight = weight.cwiseProduct(
             look_.tint.Between(r.second_point.cast<double>(), p.cast<double>()));
       }
-      if (look_.front.bare()) {
+      if (look_.front.bare() && r.way != LensWay::kTotal) {
         // What the front sends back once more ends near where the transmitted ray does.
         const Eigen::Vector3f again = batch_.back_reflectance[j] * weight;
         batch_.regular[k].through += again;

@@ -4,6 +4,7 @@
 #pragma once
 
 #include <Eigen/Geometry>
+#include <optional>
 #include <vector>
 
 #include "render/camera_sample.h"
@@ -20,19 +21,24 @@ class LensPass {
            const Eigen::Vector3d& eye, std::size_t lens, TileBatch& batch,
            std::vector<CameraSample>& samples, std::vector<PixelState>& pixels);
 
-  // Fills the samples that pass both surfaces, and batch.lens_of for them and for those that have
-  // to be traced exactly.
+  // Fills the samples that enter by the first surface, and batch.lens_of for them and for those
+  // that have to be traced exactly.
   void Trace();
 
  private:
   // The samples that may touch the glass, through the kernel. False: none does.
   bool ThroughKernel();
-  // Straight through both surfaces, certainly beside the glass, or neither.
+  // What each ray does after the first surface; certainly beside the glass; or none of these.
   void SortOut();
+  // How far from the front the ground wall cuts a ray off that would meet the back beside the
+  // contour. Nothing: it does not, or the wall is polished.
+  std::optional<float> WayToWall(std::size_t k, const ContourIndex::Place& at1,
+                                 const ContourIndex::Place& at2) const;
   // How the light of a ray through both surfaces is shared out. `enter`, `leave`: reflectances of
   // bare glass.
   void Share(float enter, float leave, const Eigen::Vector3f& direction, LensRay& ray) const;
-  // Mirrored by the front; gone through, unless the frame's reach into the glass lies between.
+  // Mirrored by the front; gone through or to the wall, unless the frame's reach into the glass
+  // lies between.
   void Divide();
   // Mirrored by the back: out through the front, to the wall, or the exact way.
   void SendBack();

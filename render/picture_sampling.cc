@@ -51,6 +51,36 @@ class WeightTable {
   float weights_[kSteps + 1][kTaps];
 };
 
+constexpr int kMostTaps = 6;
+
+// n positions over a side about `x`, bilinear: the pixels that they read, ascending, and their
+// weights. Both axes together are n x n bilinear taps.
+struct AxisTaps {
+  int count = 0;
+  int at[2 * kMostTaps];
+  float weight[2 * kMostTaps];
+  AxisTaps(float x, float side_px, int n, int size) {
+    for (int i = 0; i < n; ++i) {
+      const float position = std::clamp(x + side_px * ((float(i) + 0.5f) / float(n) - 0.5f) - 0.5f,
+                                        0.0f, float(size - 1));
+      const int first = int(position);
+      const float share = position - float(first);
+      Add(first, 1 - share);
+      Add(std::min(first + 1, size - 1), share);
+    }
+  }
+  void Add(int pixel, float w) {
+    // Positions ascend: a pixel that was read before is the last or the last but one.
+    for (int k = count - 1; k >= std::max(0, count - 2); --k) {
+      if (at[k] != pixel) continue;
+      weight[k] += w;
+      return;
+    }
+    at[count] = pixel;
+    weight[count++] = w;
+  }
+};
+
 }  // namespace
 
 Eigen::Vector3f SampleBilinear(const InputPicture& image, float x, float y) {
@@ -97,15 +127,20 @@ Eigen::Vector3f SampleSharp(const InputPicture& image, float x, float y) {
 
 Eigen::Vector3f SampleMean(const InputPicture& image, float x, float y, float side_px) {
   constexpr float kSharpUpTo_px = 1.25f;
-  constexpr int kMostTaps = 6;
   if (!(side_px > kSharpUpTo_px)) return SampleSharp(image, x, y);
   const int n = std::min(kMostTaps, int(std::ceil(side_px)));
+  const AxisTaps across(x, side_px, n, image.width()), down(y, side_px, n, image.height());
   Eigen::Vector3f sum = Eigen::Vector3f::Zero();
-  for (int j = 0; j < n; ++j) {
-    for (int i = 0; i < n; ++i) {
-      sum += SampleBilinear(image, x + side_px * ((float(i) + 0.5f) / float(n) - 0.5f),
-                            y + side_px * ((float(j) + 0.5f) / float(n) - 0.5f));
+  const bool ready = image.IsReady(across.at[0], down.at[0], across.at[across.count - 1] + 1,
+                                   down.at[down.count - 1] + 1);
+  for (int j = 0; j < down.count; ++j) {
+    Eigen::Vector3f row = Eigen::Vector3f::Zero();
+    for (int i = 0; i < across.count; ++i) {
+      row +=
+          across.weight[i] * (ready ? Eigen::Vector3f(Texel(image.Ready(across.at[i], down.at[j])))
+                                    : image.Pixel(across.at[i], down.at[j]));
     }
+    sum += down.weight[j] * row;
   }
   return sum / float(n * n);
 }

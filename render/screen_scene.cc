@@ -134,6 +134,8 @@ Share Cover(const HeadScene& head, const ScreenScene& screen, std::size_t begin,
     for (int k = 0; k < 3; ++k) {
       box.Add(screen.points[std::size_t(head.visible.triangles[t][k])]);
     }
+    // The sides toward the camera cover as much.
+    if (box.whole && marks.IsTurnedAway(t, screen.points)) continue;
     if (const std::uint8_t bits = marks.Of(t)) {
       ForTiles(box.whole ? TilesOf(box, kMargin_px, mask) : Everywhere(mask), mask,
                [&](std::size_t tile) { share.content[tile] |= bits; });
@@ -142,7 +144,6 @@ Share Cover(const HeadScene& head, const ScreenScene& screen, std::size_t begin,
       share.complete = share.complete && box.behind;
       continue;
     }
-    if (marks.IsTurnedAway(t, screen.points)) continue;
     ForTiles(TilesOf(box, 0, mask), mask, [&](std::size_t tile) {
       ++share.count[tile];
       share.covers.emplace_back(std::uint32_t(tile), std::uint32_t(t));

@@ -14,12 +14,21 @@
 
 namespace lorgnette {
 
-// A ray through both surfaces away from the edge wall.
+// What a ray through the first surface does next.
+enum class LensWay : std::uint8_t {
+  kThrough,  // through the second, with a share mirrored
+  kToWall,   // to the ground edge wall
+  kTotal,    // mirrored by the second in whole
+};
+
 struct LensRay {
   std::uint32_t sample;
   std::uint32_t ray;  // index into TileBatch::in
   bool near_rim;      // its way inside may meet the frame
-  // Shares of the pixel: mirrored by the first surface; gone through both; mirrored by the second.
+  LensWay way;
+  float inside_mm;  // way inside the glass
+  // Shares of the pixel: mirrored by the first surface; gone through both, or to the wall; mirrored
+  // by the second, as all is on total reflection.
   Eigen::Vector3f enter, through, back;
   Eigen::Vector3f entered;  // has passed the first surface
   Eigen::Vector3f first_point, first_normal, inside, second_point, second_normal, exit;
