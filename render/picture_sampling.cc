@@ -2,6 +2,7 @@
 #include <tbb/parallel_for.h>
 
 #include <algorithm>
+#include <bit>
 #include <cmath>
 
 #include "render/picture_view.h"
@@ -145,16 +146,23 @@ Eigen::Vector3f SampleMean(const InputPicture& image, float x, float y, float si
   return sum / float(n * n);
 }
 
+int FilledPicture::StepOf(int height) {
+  constexpr unsigned kRows = 45;
+  return int(std::clamp(std::bit_floor(unsigned(height) / kRows), 8u, 64u));
+}
+
 // Push and pull (Gortler et al. 1996): means of the known pixels go up a pyramid, and come down
 // into the holes.
-FilledPicture::FilledPicture(const InputPicture& input, const std::vector<std::uint8_t>& known) {
+FilledPicture::FilledPicture(const InputPicture& input, const std::vector<std::uint8_t>& known)
+    : step_(StepOf(input.height())) {
   struct Level {
     ImageRgbF colour;
     std::vector<float> weight;
   };
   std::vector<Level> levels(1);
   Level& base = levels.front();
-  base.colour = ImageRgbF(ReducedSide(input.width()), ReducedSide(input.height()));
+  base.colour = ImageRgbF(ReducedSide(input.width(), step_), ReducedSide(input.height(), step_));
+  const int stride = step_ / 2;  // what is made up here needs no more
   base.weight.assign(known.size(), 0);
   tbb::parallel_for(0, base.colour.height, [&](int y) {
     for (int x = 0; x < base.colour.width; ++x) {
@@ -162,10 +170,10 @@ FilledPicture::FilledPicture(const InputPicture& input, const std::vector<std::u
       if (!known[i]) continue;
       Eigen::Vector3f sum = Eigen::Vector3f::Zero();
       float count = 0;
-      // Every fourth pixel both ways: what is made up here needs no more.
-      for (int v = y * kStep; v < std::min((y + 1) * kStep, input.height()); v += 4) {
-        for (int u = x * kStep; u < std::min((x + 1) * kStep, input.width()); u += 4, ++count) {
+      for (int v = y * step_; v < std::min((y + 1) * step_, input.height()); v += stride) {
+        for (int u = x * step_; u < std::min((x + 1) * step_, input.width()); u += stride) {
           sum += input.Pixel(u, v);
+          ++count;
         }
       }
       sum /= count;
@@ -214,7 +222,7 @@ FilledPicture::FilledPicture(const InputPicture& input, const std::vector<std::u
 }
 
 Eigen::Vector3f FilledPicture::Sample(float x, float y) const {
-  return SampleBilinear(filled_, x / float(kStep), y / float(kStep));
+  return SampleBilinear(filled_, x / float(step_), y / float(step_));
 }
 
 }  // namespace lorgnette

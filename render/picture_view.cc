@@ -206,8 +206,9 @@ void PictureView::FillFace() const {
 }
 
 void PictureView::FillBackground() const {
-  const int width = FilledPicture::ReducedSide(camera_.width);
-  const int height = FilledPicture::ReducedSide(camera_.height);
+  const int step = FilledPicture::StepOf(camera_.height);
+  const int width = FilledPicture::ReducedSide(camera_.width, step);
+  const int height = FilledPicture::ReducedSide(camera_.height, step);
   // A reduced pixel is background when the rays at its four corners are.
   const int corners = width + 1;
   std::vector<std::uint8_t> hit(std::size_t(corners) * std::size_t(height + 1));
@@ -215,8 +216,7 @@ void PictureView::FillBackground() const {
     for (int first = 0; first < corners; first += RayPacket::kSize) {
       RayPacket packet;
       for (int k = 0; k < RayPacket::kSize; ++k) {
-        const Eigen::Vector3d d =
-            camera_.Direction((first + k) * FilledPicture::kStep, row * FilledPicture::kStep);
+        const Eigen::Vector3d d = camera_.Direction((first + k) * step, row * step);
         const Eigen::Vector3f head = rotation_.transpose() * d.cast<float>();
         packet.valid[k] = first + k < corners;
         packet.Set(k, eye_, head, background_depth_);

@@ -24,16 +24,18 @@ Eigen::Vector3f SampleBilinear(const InputPicture& image, float x, float y);
 // a minus lens makes small does not alias.
 Eigen::Vector3f SampleMean(const InputPicture& image, float x, float y, float side_px);
 
-// The input reduced by kFillStep, with holes (and all around) filled from their borders.
+// The input reduced to some 45 to 90 rows, with holes (and all around) filled from their borders.
 class FilledPicture {
  public:
   // known: one byte a reduced pixel, 1 where the picture shows what is wanted.
   FilledPicture(const InputPicture& input, const std::vector<std::uint8_t>& known);
   Eigen::Vector3f Sample(float x, float y) const;  // in pixels of the input
-  static constexpr int kStep = 8;
-  static int ReducedSide(int side) { return (side + kStep - 1) / kStep; }
+  // Pixels of the input along a side of a reduced one, by the input's height.
+  static int StepOf(int height);
+  static int ReducedSide(int side, int step) { return (side + step - 1) / step; }
 
  private:
+  int step_;
   ImageRgbF filled_;
 };
 
