@@ -24,7 +24,7 @@ LIBRARIES = {
     "Eigen/": EVERYWHERE,
     "tl/expected": EVERYWHERE,
     "fmt/": EVERYWHERE,
-    "hwy/": ["optics"],
+    "hwy/": ["optics", "render"],
     "nlohmann/": ["base", "geometry", "tracking", "render", "validation", "apps", "web"],
     "tbb/": ["base", "tracking", "render", "validation", "apps"],
     "CGAL/": ["geometry"],
