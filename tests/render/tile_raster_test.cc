@@ -2,6 +2,7 @@
 #include "render/tile_raster.h"
 
 #include <gtest/gtest.h>
+#include <hwy/highway.h>
 
 #include <algorithm>
 #include <cmath>
@@ -98,21 +99,19 @@ TEST(TileRaster, MeetsWhatRaysMeet) {
   EXPECT_LT(double(other), 2e-4 * double(all));
 }
 
-// A plane of triangles of every shape, with corners and sides right on samples: none slips through.
-TEST(TileRaster, LeavesNoGapBetweenTriangles) {
-  constexpr int kCells = 24;
-  std::mt19937 random(5);
-  std::uniform_real_distribution<float> shift(-0.45f, 0.45f);
-  std::uniform_int_distribution<int> quarter(-1, 1);
-  for (int round = 0; round < 40; ++round) {
-    VisibleMesh mesh;
-    ScreenScene screen;
+// A plane of triangles of every shape over the first tile, 500 mm away; corners on the grid of
+// samples, or anywhere.
+struct Plane {
+  VisibleMesh mesh;
+  ScreenScene screen;
+  Plane(bool exact, std::mt19937& random) {
+    constexpr int kCells = 24;
+    std::uniform_real_distribution<float> shift(-0.45f, 0.45f);
+    std::uniform_int_distribution<int> quarter(-1, 1);
     screen.mask.columns = screen.mask.rows = 1;
     screen.mask.content = {kTileFrame};
     for (int j = 0; j <= kCells; ++j) {
       for (int i = 0; i <= kCells; ++i) {
-        // Corners on the grid of samples, or anywhere; a border around the tile.
-        const bool exact = round % 2 == 0;
         screen.points.push_back({-2 + float(i) * 0.9f, -2 + float(j) * 0.9f, 0.002f});
         ScreenPoint& p = screen.points.back();
         p.x = exact ? 0.25f * std::round(4 * p.x) + 0.25f * float(quarter(random))
@@ -137,16 +136,43 @@ TEST(TileRaster, LeavesNoGapBetweenTriangles) {
       screen.triangles.push_back(std::uint32_t(t));
     }
     screen.first = {0, std::uint32_t(mesh.triangles.size())};
-    std::vector<CameraSample> samples;
-    PlaceSamples({0, 0, kTileSide, kTileSide}, 2, nullptr, samples);
-    TileRaster raster;
-    std::vector<SceneHit> hits;
-    raster.Trace(mesh, screen, 0, samples, hits);
-    for (std::size_t i = 0; i < hits.size(); ++i) {
-      ASSERT_TRUE(hits[i].hit()) << round << ": " << samples[i].x << ", " << samples[i].y;
-      EXPECT_NEAR(hits[i].distance, 500, 1e-2);
+  }
+};
+
+// On every instruction set that this machine has: no sample slips through.
+TEST(TileRaster, LeavesNoGapBetweenTriangles) {
+  std::vector<CameraSample> samples;
+  PlaceSamples({0, 0, kTileSide, kTileSide}, 2, nullptr, samples);
+  int targets = 0;
+  for (const std::int64_t target : hwy::SupportedAndGeneratedTargets()) {
+    hwy::SetSupportedTargetsForTest(target);
+    hwy::GetChosenTarget().DeInit();  // choose anew at the next call
+    ++targets;
+    std::mt19937 random(5);
+    for (int round = 0; round < 40; ++round) {
+      const Plane plane(round % 2 == 0, random);
+      TileRaster raster;
+      std::vector<SceneHit> hits;
+      raster.Trace(plane.mesh, plane.screen, 0, samples, hits);
+      for (std::size_t i = 0; i < hits.size(); ++i) {
+        ASSERT_TRUE(hits[i].hit()) << hwy::TargetName(target) << ", " << round << ": "
+                                   << samples[i].x << ", " << samples[i].y;
+        EXPECT_NEAR(hits[i].distance, 500, 1e-2);
+        const Eigen::Vector3i& t = plane.mesh.triangles[hits[i].triangle];
+        const float w[3] = {1 - hits[i].u - hits[i].v, hits[i].u, hits[i].v};
+        float x = 0, y = 0;
+        for (int k = 0; k < 3; ++k) {
+          x += w[k] * plane.screen.points[std::size_t(t[k])].x;
+          y += w[k] * plane.screen.points[std::size_t(t[k])].y;
+        }
+        EXPECT_NEAR(x, samples[i].x, 1e-3);
+        EXPECT_NEAR(y, samples[i].y, 1e-3);
+      }
     }
   }
+  hwy::SetSupportedTargetsForTest(0);
+  hwy::GetChosenTarget().DeInit();
+  EXPECT_GE(targets, 1);
 }
 
 TEST(ScreenScene, SaysWhereTheCameraIsTooClose) {
