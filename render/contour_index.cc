@@ -174,9 +174,9 @@ bool ContourIndex::CrossingsAreOdd(double x, double y) const {
 }
 
 bool ContourIndex::InsideInCell(std::size_t cell, double x, double y) const {
+  const std::size_t columns = std::size_t(columns_), row = cell / columns;
   const Eigen::Vector2d centre =
-      grid_low_ + cell_ * Eigen::Vector2d(double(cell % std::size_t(columns_)) + 0.5,
-                                          double(cell / std::size_t(columns_)) + 0.5);
+      grid_low_ + cell_ * Eigen::Vector2d(double(cell - row * columns) + 0.5, double(row) + 0.5);
   const Eigen::Vector2d way = Eigen::Vector2d(x, y) - centre;
   bool inside = distance_[cell] > 0;
   // A centre on the boundary itself tells nothing.

@@ -161,8 +161,10 @@ void TileRaster::Trace(const VisibleMesh& mesh, const ScreenScene& screen, std::
   const std::uint32_t first = screen.first[tile], end = screen.first[tile + 1];
   if (n == 0 || first == end) return;
   raster::Job job;
-  job.corner_x = float(int(tile) % screen.mask.columns * kTileSide);
-  job.corner_y = float(int(tile) / screen.mask.columns * kTileSide);
+  const PixelBox area =
+      screen.mask.Area(tile, screen.mask.columns * kTileSide, screen.mask.rows * kTileSide);
+  job.corner_x = float(area.x0);
+  job.corner_y = float(area.y0);
   job.packets = (n + kPacket - 1) / kPacket;
   const std::size_t filled = job.packets * kPacket;
   for (std::vector<float>* column : {&x_, &y_, &u_, &v_}) column->resize(filled);
