@@ -25,8 +25,9 @@ void TileRenderer::TracePrimary(std::size_t tile, const std::vector<CameraSample
                                 TileBatch& batch) const {
   const Eigen::Vector3f eye = eye_.cast<float>();
   const float inverse_fx = float(1 / camera_.fx), inverse_fy = float(1 / camera_.fy);
-  if (screen_.complete)
+  if (screen_.complete) {
     batch.raster.Trace(head_.visible, screen_, tile, samples, batch.primary.hits);
+  }
   batch.primary.Clear();
   for (std::size_t i = 0; i < samples.size(); ++i) {
     const Eigen::Vector3f d((samples[i].x - float(camera_.cx)) * inverse_fx,
