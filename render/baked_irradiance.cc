@@ -61,6 +61,7 @@ BakedIrradiance BakedIrradiance::Bake(const EmbreeScene& scene, const TriangleMe
   baked.transfer_.resize(count);
   baked.head_share_.resize(count);
   const std::vector<Eigen::Vector3f> sphere = SphereDirections(directions);
+  const DirectionColumns columns(sphere);
   std::vector<Harmonics> harmonics;
   for (const Eigen::Vector3f& d : sphere) harmonics.push_back(EvaluateHarmonics(d));
   const float solid_angle = float(4 * kPi) / float(directions);
@@ -73,19 +74,20 @@ BakedIrradiance BakedIrradiance::Bake(const EmbreeScene& scene, const TriangleMe
       Harmonics& transfer = baked.transfer_[i];
       transfer.fill(0);
       float head = 0, total = 0;
-      ForHemispherePackets(sphere, origin, normal,
+      ForHemispherePackets(columns, origin, normal,
                            [&](std::size_t first, RayPacket& packet, const float* cosine) {
-                             RayPacket by_head = packet;
-                             scene.Occluded16(RaySet::kFrame, packet);
                              for (std::size_t k = 0; k < RayPacket::kSize; ++k) {
-                               by_head.valid[k] = packet.valid[k] && packet.far[k] >= 0;
+                               if (packet.valid[k]) total += cosine[k];
                              }
-                             scene.Occluded16(RaySet::kHead, by_head);
+                             scene.Occluded16(RaySet::kFrame, packet);
+                             // On to the head with those that pass the frame.
+                             for (std::size_t k = 0; k < RayPacket::kSize; ++k) {
+                               packet.Choose(k, packet.valid[k] && packet.far[k] >= 0);
+                             }
+                             scene.Occluded16(RaySet::kHead, packet);
                              for (std::size_t k = 0; k < RayPacket::kSize; ++k) {
                                if (!packet.valid[k]) continue;
-                               total += cosine[k];
-                               if (packet.far[k] < 0) continue;
-                               if (by_head.far[k] < 0) {
+                               if (packet.far[k] < 0) {
                                  views.Set(i, Views::kHead, first + k);
                                  head += cosine[k];
                                  continue;

@@ -10,7 +10,6 @@
 
 #include "base/units.h"
 #include "render/lighting.h"
-#include "render/visibility.h"
 
 namespace lorgnette {
 namespace {
@@ -50,7 +49,7 @@ BakedShadow BakedShadow::Bake(const EmbreeScene& scene, const TriangleMesh& face
 
   baked.BakeOpenLight(scene, face, options);
 
-  baked.sphere_ = SphereDirections(options.directions);
+  baked.sphere_ = DirectionColumns(SphereDirections(options.directions));
   baked.sees_face_ = options.sees_face;
   std::vector<Lists> lists(points.size());
   const auto trace = [&](const std::vector<std::uint32_t>& which) {
@@ -107,18 +106,24 @@ BakedShadow BakedShadow::Bake(const EmbreeScene& scene, const TriangleMesh& face
 }
 
 BakedShadow::Lists BakedShadow::ListBlocked(const EmbreeScene& scene,
-                                            const std::vector<Eigen::Vector3f>& sphere,
-                                            const LatticePoint& at, bool sees_face) {
-  thread_local std::vector<Blocked> blocked, hidden;
+                                            const DirectionColumns& sphere, const LatticePoint& at,
+                                            bool sees_face) {
+  thread_local std::vector<Blocked> thread_blocked, thread_hidden;
+  std::vector<Blocked>&blocked = thread_blocked, &hidden = thread_hidden;
   blocked.clear();
   hidden.clear();
-  std::size_t above = 0;
+  std::int32_t above = 0;
   ForHemispherePackets(sphere, at.position + kFrameLift_mm * at.normal, at.normal,
                        [&](std::size_t first, RayPacket& packet, const float* cosine) {
                          scene.Occluded16(RaySet::kFrame, packet);
+                         // Most packets pass the frame.
+                         float least = 0;
                          for (std::size_t k = 0; k < RayPacket::kSize; ++k) {
-                           if (!packet.valid[k]) continue;
-                           ++above;
+                           above -= packet.valid[k];
+                           least = packet.far[k] < least ? packet.far[k] : least;
+                         }
+                         if (least == 0) return;
+                         for (std::size_t k = 0; k < RayPacket::kSize; ++k) {
                            if (packet.far[k] >= 0) continue;
                            blocked.push_back({std::uint16_t(first + k),
                                               std::uint16_t(std::lrint(kCosineUnits * cosine[k]))});
@@ -126,13 +131,14 @@ BakedShadow::Lists BakedShadow::ListBlocked(const EmbreeScene& scene,
                        });
   Lists lists;
   lists.above = std::uint32_t(above);
-  lists.buried = blocked.size() == above;
+  lists.buried = blocked.size() == lists.above;
   if (sees_face) {
     // Those that the face hides go behind the others.
     const Eigen::Vector3f origin = at.position + kFaceLift_mm * at.normal;
     std::size_t kept = 0;
+    RayPacket packet;
     for (std::size_t first = 0; first < blocked.size(); first += RayPacket::kSize) {
-      RayPacket packet = PacketToward(sphere, origin, blocked, first);
+      PointToward(sphere, origin, blocked, first, packet);
       scene.Occluded16(RaySet::kHead, packet);
       for (std::size_t k = 0; k < RayPacket::kSize; ++k) {
         if (!packet.valid[k]) continue;
@@ -222,22 +228,20 @@ void BakedShadow::FindNeighbours() {
   }
 }
 
-RayPacket BakedShadow::PacketToward(const std::vector<Eigen::Vector3f>& sphere,
-                                    const Eigen::Vector3f& origin,
-                                    const std::vector<Blocked>& blocked, std::size_t first) {
-  RayPacket packet;
+void BakedShadow::PointToward(const DirectionColumns& sphere, const Eigen::Vector3f& origin,
+                              const std::vector<Blocked>& blocked, std::size_t first,
+                              RayPacket& packet) {
   for (std::size_t k = 0; k < RayPacket::kSize; ++k) {
-    const bool valid = first + k < blocked.size();
-    const Eigen::Vector3f& d = sphere[blocked[valid ? first + k : first].direction];
-    packet.valid[k] = valid;
-    packet.Set(k, origin, d);
+    const bool traced = first + k < blocked.size();
+    packet.Choose(k, traced);
+    packet.Set(k, origin, sphere[blocked[traced ? first + k : first].direction]);
   }
-  return packet;
 }
 
 void BakedShadow::BakeOpenLight(const EmbreeScene& scene, const TriangleMesh& face,
                                 const ShadowOptions& options) {
   const std::vector<Eigen::Vector3f> sphere = SphereDirections(kOpenDirections);
+  const DirectionColumns columns(sphere);
   std::vector<Harmonics> harmonics;
   for (const Eigen::Vector3f& d : sphere) harmonics.push_back(EvaluateHarmonics(d));
   const float solid_angle = float(4 * kPi) / kOpenDirections;
@@ -248,7 +252,7 @@ void BakedShadow::BakeOpenLight(const EmbreeScene& scene, const TriangleMesh& fa
     point.seen.fill(0);
     point.all.fill(0);
     float open = 0, total = 0;
-    ForHemispherePackets(sphere, face.positions[i].cast<float>() + kFaceLift_mm * normal, normal,
+    ForHemispherePackets(columns, face.positions[i].cast<float>() + kFaceLift_mm * normal, normal,
                          [&](std::size_t first, RayPacket& packet, const float* cosine) {
                            if (options.sees_face) scene.Occluded16(RaySet::kHead, packet);
                            for (std::size_t k = 0; k < RayPacket::kSize; ++k) {

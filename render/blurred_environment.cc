@@ -8,6 +8,7 @@
 
 #include "base/units.h"
 #include "render/environment.h"
+#include "render/lobe_mean.h"
 
 namespace lorgnette {
 namespace {
@@ -61,21 +62,6 @@ Eigen::Vector3f Unfold(float x, float y) {
   return d.normalized();
 }
 
-// One row of texels of the reduced environment: they share their elevation and solid angle.
-struct SourceRow {
-  float sin_lat, cos_lat, weight;
-};
-
-struct Source {
-  ImageRgbF map;
-  std::vector<SourceRow> rows;
-  std::vector<Eigen::Vector2f> columns;  // -sin lon, cos lon
-  float columns_a_radian = 1;            // of longitude
-
-  // The column, in fractions, whose middle lies at a longitude.
-  float ColumnAt(float lon) const { return (lon + float(kPi)) * columns_a_radian - 0.5f; }
-};
-
 // The map on a grid fine enough for the kernel, where its own has fewer texels.
 ImageRgbF Interpolated(const Environment& environment, int width, int height) {
   const Environment grid(ImageRgbF(width, height));
@@ -89,114 +75,65 @@ ImageRgbF Interpolated(const Environment& environment, int width, int height) {
   return map;
 }
 
-Source Reduce(const Environment& environment, int width) {
+LobeSource Reduce(const Environment& environment, int width) {
   std::optional<ImageRgbF> finer;
   if (environment.map().width < width || environment.map().height < width / 2) {
     finer = Interpolated(environment, width, width / 2);
   }
   const ImageRgbF& in = finer ? *finer : environment.map();
   const int factor = std::max(1, in.width / width);
-  Source out;
-  out.map = ImageRgbF((in.width + factor - 1) / factor, (in.height + factor - 1) / factor);
-  out.rows.resize(std::size_t(out.map.height));
-  tbb::parallel_for(0, out.map.height, [&](int y) {
+  LobeSource out;
+  out.width = (in.width + factor - 1) / factor;
+  const int height = (in.height + factor - 1) / factor;
+  out.rows.resize(std::size_t(height));
+  out.columns_a_radian = float(in.width / (2 * kPi * factor));
+  for (auto& channel : out.channels) channel.assign(out.rows.size() * out.stride(), 0);
+  tbb::parallel_for(0, height, [&](int y) {
     const int y1 = std::min((y + 1) * factor, in.height);
-    for (int x = 0; x < out.map.width; ++x) {
+    for (int x = 0; x < out.width; ++x) {
       const int x1 = std::min((x + 1) * factor, in.width);
       Eigen::Vector3f sum = Eigen::Vector3f::Zero();
       for (int v = y * factor; v < y1; ++v) {
         for (int u = x * factor; u < x1; ++u) sum += Eigen::Map<const Eigen::Vector3f>(in.at(u, v));
       }
       sum /= float((y1 - y * factor) * (x1 - x * factor));
-      std::copy(sum.data(), sum.data() + 3, out.map.at(x, y));
+      for (std::size_t c = 0; c < 3; ++c) {
+        float* row = out.channels[c].data() + std::size_t(y) * out.stride();
+        row[x] = row[x + out.width] = sum[Eigen::Index(c)];
+      }
     }
     const double lat = kPi * (0.5 - 0.5 * (y * factor + y1) / in.height);
     out.rows[std::size_t(y)] = {float(std::sin(lat)), float(std::cos(lat)),
                                 float(std::cos(lat) * (y1 - y * factor))};
   });
-  out.columns_a_radian = float(in.width / (2 * kPi * factor));
-  for (int x = 0; x < out.map.width; ++x) {
+  out.minus_sin_lon.assign(out.stride(), 0);
+  out.cos_lon.assign(out.stride(), 0);
+  for (int x = 0; x < out.width; ++x) {
     const int x1 = std::min((x + 1) * factor, in.width);
     const double lon = 2 * kPi * (0.5 * (x * factor + x1) / in.width - 0.5);
-    out.columns.emplace_back(float(-std::sin(lon)), float(std::cos(lon)));
+    for (const int at : {x, x + out.width}) {
+      out.minus_sin_lon[std::size_t(at)] = float(-std::sin(lon));
+      out.cos_lon[std::size_t(at)] = float(std::cos(lon));
+    }
   }
   return out;
-}
-
-// cos^exponent from cos_cut to 1, linear between 1025 cosines: to 2e-5 of the peak.
-class Kernel {
- public:
-  Kernel(double exponent, double cos_cut)
-      : cos_cut_(float(cos_cut)), scale_(float(kSteps / (1 - cos_cut))) {
-    for (int i = 0; i <= kSteps; ++i) {
-      values_.push_back(float(std::pow(cos_cut + (1 - cos_cut) * i / kSteps, exponent)));
-    }
-    values_.push_back(values_.back());
-  }
-  float cos_cut() const { return cos_cut_; }
-  float At(float cosine) const {
-    const float at = std::min((cosine - cos_cut_) * scale_, float(kSteps));
-    const int i = int(at);
-    const float* v = &values_[std::size_t(i)];
-    return v[0] + (at - float(i)) * (v[1] - v[0]);
-  }
-
- private:
-  static constexpr int kSteps = 1024;
-  float cos_cut_, scale_;
-  std::vector<float> values_;
-};
-
-// Mean of the map under the kernel about d.
-Eigen::Vector3f Gather(const Source& source, const Eigen::Vector3f& d, const Kernel& kernel) {
-  const float cos_cut = kernel.cos_cut();
-  Eigen::Vector3f sum = Eigen::Vector3f::Zero();
-  float weight = 0;
-  const float horizontal = std::sqrt(d.x() * d.x() + d.z() * d.z());
-  const float middle = source.ColumnAt(std::atan2(-d.x(), d.z()));
-  const int width = source.map.width;
-  for (int y = 0; y < source.map.height; ++y) {
-    const SourceRow& row = source.rows[std::size_t(y)];
-    // The best any column of this row can do.
-    const float best = horizontal * row.cos_lat, wanted = cos_cut - d.y() * row.sin_lat;
-    if (best < wanted) continue;
-    // Columns that can reach the cut lie this far to either side; one more for the last, which may
-    // be narrower than the others.
-    const float away =
-        wanted <= -best ? float(width) : std::acos(wanted / best) * source.columns_a_radian + 2;
-    const bool all = 2 * away + 1 >= float(width);
-    const int first = all ? 0 : int(std::floor(middle - away));
-    const int end = all ? width : int(std::ceil(middle + away)) + 1;
-    for (int at = first; at < end; ++at) {
-      const int x = at < 0 ? at + width : at < width ? at : at - width;
-      const float* texel = source.map.at(x, y);
-      const Eigen::Vector2f& column = source.columns[std::size_t(x)];
-      const float cosine =
-          d.y() * row.sin_lat + row.cos_lat * (d.x() * column.x() + d.z() * column.y());
-      if (cosine < cos_cut) continue;
-      const float w = row.weight * kernel.At(cosine);
-      sum += w * Eigen::Map<const Eigen::Vector3f>(texel);
-      weight += w;
-    }
-  }
-  return weight > 0 ? Eigen::Vector3f(sum / weight) : Eigen::Vector3f::Zero();
 }
 
 }  // namespace
 
 BlurredEnvironment::BlurredEnvironment(const Environment& environment, double exponent)
     : side_(MapSide(exponent)), map_(side_ + 2, side_ + 2) {
-  const Source source = Reduce(environment, SourceWidth(exponent));
+  const LobeSource source = Reduce(environment, SourceWidth(exponent));
   // Beyond this angle the kernel is below 1/1000 of its peak; at least three source texels wide,
   // so that a kernel finer than the map still finds one.
   const double cut = std::max(1 - std::pow(1e-3, 1 / std::max(exponent, 1e-3)),
-                              1 - std::cos(3 * kPi / source.map.height));
-  const Kernel kernel(exponent, std::max(1 - cut, 0.0));
+                              1 - std::cos(3 * kPi / double(source.rows.size())));
+  const LobeKernel kernel(exponent, std::max(1 - cut, 0.0));
   tbb::parallel_for(0, side_ + 2, [&](int y) {
     for (int x = 0; x < side_ + 2; ++x) {
       const Eigen::Vector3f d =
           Unfold(float(2 * (x - 0.5) / side_ - 1), float(2 * (y - 0.5) / side_ - 1));
-      const Eigen::Vector3f mean = Gather(source, d, kernel);
+      const Eigen::Vector3f mean = LobeMean(source, kernel, d);
       std::copy(mean.data(), mean.data() + 3, map_.at(x, y));
     }
   });

@@ -5,6 +5,7 @@
 #include <fmt/format.h>
 #include <tbb/parallel_invoke.h>
 
+#include <cstddef>
 #include <cstring>
 #include <limits>
 #include <utility>
@@ -43,23 +44,21 @@ RTCIntersectContext Context(RTCIntersectContextFlags flags) {
   return context;
 }
 
-// A packet as Embree has it, before a trace.
-RTCRayHit16 QueryOf(const RayPacket& p) {
-  RTCRayHit16 q;
-  std::memcpy(q.ray.org_x, p.ox, sizeof p.ox);
-  std::memcpy(q.ray.org_y, p.oy, sizeof p.oy);
-  std::memcpy(q.ray.org_z, p.oz, sizeof p.oz);
-  std::memcpy(q.ray.tnear, p.near, sizeof p.near);
-  std::memcpy(q.ray.dir_x, p.dx, sizeof p.dx);
-  std::memcpy(q.ray.dir_y, p.dy, sizeof p.dy);
-  std::memcpy(q.ray.dir_z, p.dz, sizeof p.dz);
-  std::memcpy(q.ray.tfar, p.far, sizeof p.far);
-  std::memset(q.ray.time, 0, sizeof q.ray.time);
-  std::memset(q.ray.mask, 0xff, sizeof q.ray.mask);
-  std::memset(q.ray.flags, 0, sizeof q.ray.flags);
-  std::memset(q.hit.geomID, 0xff, sizeof q.hit.geomID);
-  std::memset(q.hit.instID, 0xff, sizeof q.hit.instID);
-  return q;
+// The packet as Embree takes it.
+static_assert(offsetof(RayPacket, near) == offsetof(RTCRay16, tnear) &&
+              offsetof(RayPacket, far) == offsetof(RTCRay16, tfar) &&
+              offsetof(RayPacket, mask) == offsetof(RTCRay16, mask) &&
+              offsetof(RayPacket, nx) == offsetof(RTCRayHit16, hit) &&
+              offsetof(RayPacket, u) == offsetof(RTCRayHit16, hit.u) &&
+              offsetof(RayPacket, object) == offsetof(RTCRayHit16, hit.geomID) &&
+              offsetof(RayPacket, valid) == sizeof(RTCRayHit16));
+static_assert(RTC_MAX_INSTANCE_LEVEL_COUNT == 1);
+
+void Trace16(RTCScene scene, RayPacket& p) {
+  RTCIntersectContext context = Context(RTC_INTERSECT_CONTEXT_FLAG_COHERENT);
+  std::fill_n(p.object, RayPacket::kSize, SceneObject::kNone);
+  std::fill_n(p.instance, RayPacket::kSize, RTC_INVALID_GEOMETRY_ID);
+  rtcIntersect16(p.valid, scene, &context, reinterpret_cast<RTCRayHit16*>(&p));
 }
 
 }  // namespace
@@ -188,38 +187,15 @@ bool EmbreeScene::Occluded(RaySet set, const Eigen::Vector3f& origin,
   return ray.tfar < 0;
 }
 
-void EmbreeScene::Intersect16(RaySet set, RayPacket& p) const {
-  RTCIntersectContext context = Context(RTC_INTERSECT_CONTEXT_FLAG_COHERENT);
-  RTCRayHit16 q = QueryOf(p);
-  alignas(64) std::int32_t mask[RayPacket::kSize];
-  for (int i = 0; i < RayPacket::kSize; ++i) mask[i] = p.valid[i] ? -1 : 0;
-  rtcIntersect16(mask, state_->scene(set), &context, &q);
-  std::memcpy(p.far, q.ray.tfar, sizeof p.far);
-  std::memcpy(p.u, q.hit.u, sizeof p.u);
-  std::memcpy(p.v, q.hit.v, sizeof p.v);
-  std::memcpy(p.triangle, q.hit.primID, sizeof p.triangle);
-  std::memcpy(p.object, q.hit.geomID, sizeof p.object);
+void EmbreeScene::Intersect16(RaySet set, RayPacket& packet) const {
+  Trace16(state_->scene(set), packet);
 }
 
-void EmbreeScene::Occluded16(RaySet set, RayPacket& p) const {
+void EmbreeScene::Occluded16(RaySet set, RayPacket& packet) const {
   // Rays of a hemisphere: measured 20 per cent faster so than as a coherent packet.
   RTCIntersectContext context = Context(RTC_INTERSECT_CONTEXT_FLAG_INCOHERENT);
-  RTCRay16 q;
-  std::memcpy(q.org_x, p.ox, sizeof p.ox);
-  std::memcpy(q.org_y, p.oy, sizeof p.oy);
-  std::memcpy(q.org_z, p.oz, sizeof p.oz);
-  std::memcpy(q.tnear, p.near, sizeof p.near);
-  std::memcpy(q.dir_x, p.dx, sizeof p.dx);
-  std::memcpy(q.dir_y, p.dy, sizeof p.dy);
-  std::memcpy(q.dir_z, p.dz, sizeof p.dz);
-  std::memcpy(q.tfar, p.far, sizeof p.far);
-  std::memset(q.time, 0, sizeof q.time);
-  std::memset(q.mask, 0xff, sizeof q.mask);
-  std::memset(q.flags, 0, sizeof q.flags);
-  alignas(64) std::int32_t mask[RayPacket::kSize];
-  for (int i = 0; i < RayPacket::kSize; ++i) mask[i] = p.valid[i] ? -1 : 0;
-  rtcOccluded16(mask, state_->occluder(set), &context, &q);
-  std::memcpy(p.far, q.tfar, sizeof p.far);
+  rtcOccluded16(packet.valid, state_->occluder(set), &context,
+                reinterpret_cast<RTCRay16*>(&packet));
 }
 
 struct EmbreeShape::State {
@@ -295,16 +271,8 @@ Result<EmbreeShape> EmbreeShape::Build(const Eigen::AlignedBox3f& box, Meet meet
 }
 
 void EmbreeShape::Intersect16(RayPacket& p, Normals& normals) const {
-  RTCIntersectContext context = Context(RTC_INTERSECT_CONTEXT_FLAG_COHERENT);
-  RTCRayHit16 q = QueryOf(p);
-  alignas(64) std::int32_t mask[RayPacket::kSize];
-  for (int i = 0; i < RayPacket::kSize; ++i) mask[i] = p.valid[i] ? -1 : 0;
-  rtcIntersect16(mask, state_->scene, &context, &q);
-  std::memcpy(p.far, q.ray.tfar, sizeof p.far);
-  std::memcpy(p.object, q.hit.geomID, sizeof p.object);
-  for (std::size_t i = 0; i < normals.size(); ++i) {
-    normals[i] = {q.hit.Ng_x[i], q.hit.Ng_y[i], q.hit.Ng_z[i]};
-  }
+  Trace16(state_->scene, p);
+  for (std::size_t i = 0; i < normals.size(); ++i) normals[i] = {p.nx[i], p.ny[i], p.nz[i]};
 }
 
 }  // namespace lorgnette

@@ -4,6 +4,7 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <algorithm>
 #include <cstdint>
 #include <limits>
 #include <memory>
@@ -27,18 +28,29 @@ inline constexpr float kEndless = std::numeric_limits<float>::infinity();
 // Which objects a ray can meet.
 enum class RaySet { kAll, kHead, kFrame };
 
-// Sixteen rays in structure-of-arrays form; rays with valid[i] == 0 are not traced. After a trace
-// `far` is the distance of the hit, in units of the direction's length.
+// Sixteen rays in structure-of-arrays form, laid out as Embree's own packets, which are traced in
+// place. After a trace `far` is the distance of the hit, in units of the direction's length.
 struct alignas(64) RayPacket {
   static constexpr int kSize = 16;
-  std::int32_t valid[kSize];
   float ox[kSize], oy[kSize], oz[kSize], near[kSize];
-  float dx[kSize], dy[kSize], dz[kSize], far[kSize];
+  float dx[kSize], dy[kSize], dz[kSize];
+  float time[kSize] = {};  // of motion blur, which no scene has
+  float far[kSize];
+  std::uint32_t mask[kSize], id[kSize], flags[kSize] = {};
+  float nx[kSize], ny[kSize], nz[kSize];  // the surface's normal, of any length
   float u[kSize], v[kSize];
   std::uint32_t triangle[kSize];
   SceneObject object[kSize];
+  std::uint32_t instance[kSize];
+  std::int32_t valid[kSize];  // -1: traced, 0: not
 
-  // Ray k; `valid` is the caller's to set.
+  RayPacket() { std::fill_n(mask, kSize, ~0u); }
+
+  template <typename Index>
+  void Choose(Index k, bool traced) {
+    valid[k] = traced ? -1 : 0;
+  }
+  // Ray k; whether it is traced is the caller's to choose.
   template <typename Index>
   void Set(Index k, const Eigen::Vector3f& origin, const Eigen::Vector3f& direction,
            float length = kEndless) {

@@ -147,7 +147,8 @@ bool MayMeetLens(const GatherScene& scene, const Eigen::Vector3f& origin,
   return false;
 }
 
-PointLight GatherPoint(const GatherScene& scene, const LatticePoint& point) {
+PointLight GatherPoint(const GatherScene& scene, const DirectionColumns& columns,
+                       const LatticePoint& point) {
   PointLight out;
   const Eigen::Vector3i& own = scene.face.triangles[point.triangle];
   const Eigen::Vector3f a = scene.face.positions[std::size_t(own[0])].cast<float>();
@@ -168,11 +169,11 @@ PointLight GatherPoint(const GatherScene& scene, const LatticePoint& point) {
   thread_local std::vector<Above> packets;
   packets.clear();
   std::size_t above = 0, by_frame = 0;
-  ForHemispherePackets(scene.directions, origin, point.normal,
+  ForHemispherePackets(columns, origin, point.normal,
                        [&](std::size_t first, RayPacket& packet, const float* cosine) {
                          for (std::size_t k = 0; k < RayPacket::kSize; ++k) {
                            if (packet.valid[k] && flat.dot(scene.directions[first + k]) <= 0) {
-                             packet.valid[k] = 0;
+                             packet.Choose(k, false);
                            }
                          }
                          packets.push_back({first, packet, {}});
@@ -237,9 +238,10 @@ PointLight GatherPoint(const GatherScene& scene, const LatticePoint& point) {
 GatheredShadow GatheredShadow::Gather(const GatherScene& scene, FaceLattice lattice) {
   GatheredShadow shadow;
   const std::vector<LatticePoint>& points = lattice.points();
+  const DirectionColumns columns(scene.directions);
   std::vector<PointLight> lights(points.size());
   tbb::parallel_for(std::size_t(0), points.size(),
-                    [&](std::size_t i) { lights[i] = GatherPoint(scene, points[i]); });
+                    [&](std::size_t i) { lights[i] = GatherPoint(scene, columns, points[i]); });
   std::vector<bool> touched(points.size());
   // The lattice point that lies on each vertex.
   std::vector<std::uint32_t> point_of(scene.face.positions.size(), 0);

@@ -15,6 +15,7 @@
 #include "render/embree_scene.h"
 #include "render/environment.h"
 #include "render/face_lattice.h"
+#include "render/visibility.h"
 
 namespace lorgnette {
 
@@ -123,11 +124,11 @@ class BakedShadow {
     float to_frame_mm;  // nearest distance, to a few mm
     Lists lists;
   };
-  static Lists ListBlocked(const EmbreeScene& scene, const std::vector<Eigen::Vector3f>& sphere,
+  static Lists ListBlocked(const EmbreeScene& scene, const DirectionColumns& sphere,
                            const LatticePoint& at, bool sees_face);
-  static RayPacket PacketToward(const std::vector<Eigen::Vector3f>& sphere,
-                                const Eigen::Vector3f& origin, const std::vector<Blocked>& blocked,
-                                std::size_t first);
+  static void PointToward(const DirectionColumns& sphere, const Eigen::Vector3f& origin,
+                          const std::vector<Blocked>& blocked, std::size_t first,
+                          RayPacket& packet);
   void FindNeighbours();
   void BakeOpenLight(const EmbreeScene& scene, const TriangleMesh& face,
                      const ShadowOptions& options);
@@ -136,7 +137,7 @@ class BakedShadow {
   std::vector<FaceLattice::Between> means_;  // points that take the mean of two before them
   std::vector<Open> open_;                   // one a vertex
   std::vector<Touched> touched_;
-  std::vector<Eigen::Vector3f> sphere_;
+  DirectionColumns sphere_;
   bool sees_face_ = true;
 };
 

@@ -36,7 +36,7 @@ void PaperShadow::Fill(const Set& set, std::size_t first, const Eigen::Vector3f&
     packet.dz[k] = basis(2, 0) * x[k] + basis(2, 1) * y[k] + basis(2, 2) * z[k];
   }
   for (int k = 0; k < RayPacket::kSize; ++k) {
-    packet.valid[k] = first + std::size_t(k) < rays_;
+    packet.Choose(k, first + std::size_t(k) < rays_);
     packet.ox[k] = origin.x();
     packet.oy[k] = origin.y();
     packet.oz[k] = origin.z();

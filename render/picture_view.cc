@@ -134,16 +134,10 @@ void PictureView::FillFace() const {
       const Eigen::Vector3f to_eye = eye_ - vertices_[i];
       const float distance = to_eye.norm();
       const Eigen::Vector3f sight = to_eye / distance;
-      packet.valid[k] = first + k < n && InsidePicture(at[k]) && normals_[i].dot(sight) >= kGrazing;
+      packet.Choose(k, first + k < n && InsidePicture(at[k]) && normals_[i].dot(sight) >= kGrazing);
       any |= packet.valid[k] != 0;
-      packet.ox[k] = vertices_[i].x();
-      packet.oy[k] = vertices_[i].y();
-      packet.oz[k] = vertices_[i].z();
+      packet.Set(k, vertices_[i], sight, distance);
       packet.near[k] = kVisibilityLift_mm;
-      packet.dx[k] = sight.x();
-      packet.dy[k] = sight.y();
-      packet.dz[k] = sight.z();
-      packet.far[k] = distance;
     }
     if (!any) return;
     scene_.Occluded16(RaySet::kHead, packet);
@@ -218,7 +212,7 @@ void PictureView::FillBackground() const {
       for (int k = 0; k < RayPacket::kSize; ++k) {
         const Eigen::Vector3d d = camera_.Direction((first + k) * step, row * step);
         const Eigen::Vector3f head = rotation_.transpose() * d.cast<float>();
-        packet.valid[k] = first + k < corners;
+        packet.Choose(k, first + k < corners);
         packet.Set(k, eye_, head, background_depth_);
       }
       scene_.Occluded16(RaySet::kHead, packet);

@@ -61,7 +61,7 @@ struct RayBundle {
     const std::size_t n = origins.size();
     for (std::size_t k = 0; k < RayPacket::kSize; ++k) {
       const std::size_t i = std::min(first + k, n - 1);
-      packet.valid[k] = first + k < n;
+      packet.Choose(k, first + k < n);
       packet.Set(k, origins[i], directions[i], far[i]);
     }
   }

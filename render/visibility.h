@@ -3,6 +3,7 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <algorithm>
 #include <vector>
 
 #include "render/embree_scene.h"
@@ -14,28 +15,44 @@ inline constexpr float kFrameLift_mm = 0.02f;
 // The same against the face: smooth normals rise above the flat triangles.
 inline constexpr float kFaceLift_mm = 0.3f;
 
-// Calls visit(first, packet, cosine) for every group of 16 neighbours in `directions` (count a
-// multiple of 16) of which any lies above the surface; packet.valid marks those that do, cosine
-// holds their dot product with `normal`. Packets come ready to trace from `origin`.
+// Directions by columns, as packets take them; their count is a multiple of 16.
+struct DirectionColumns {
+  std::vector<float> x, y, z;
+  DirectionColumns() = default;
+  explicit DirectionColumns(const std::vector<Eigen::Vector3f>& directions) {
+    for (const Eigen::Vector3f& d : directions) {
+      x.push_back(d.x());
+      y.push_back(d.y());
+      z.push_back(d.z());
+    }
+  }
+  std::size_t size() const { return x.size(); }
+  Eigen::Vector3f operator[](std::size_t i) const { return {x[i], y[i], z[i]}; }
+};
+
+// Calls visit(first, packet, cosine) for every group of 16 neighbours in `directions` of which any
+// lies above the surface; packet.valid marks those that do, cosine holds their dot product with
+// `normal`. Packets come ready to trace from `origin`, each time anew.
 template <typename Visit>
-void ForHemispherePackets(const std::vector<Eigen::Vector3f>& directions,
-                          const Eigen::Vector3f& origin, const Eigen::Vector3f& normal,
-                          Visit&& visit) {
+void ForHemispherePackets(const DirectionColumns& directions, const Eigen::Vector3f& origin,
+                          const Eigen::Vector3f& normal, Visit&& visit) {
   RayPacket packet;
-  float cosine[RayPacket::kSize];
+  for (std::size_t k = 0; k < RayPacket::kSize; ++k) packet.Set(k, origin, normal);
+  alignas(64) float cosine[RayPacket::kSize];
   for (std::size_t first = 0; first < directions.size(); first += RayPacket::kSize) {
-    bool any = false;
+    const float *x = directions.x.data() + first, *y = directions.y.data() + first,
+                *z = directions.z.data() + first;
+    std::int32_t any = 0;
     for (std::size_t k = 0; k < RayPacket::kSize; ++k) {
-      const Eigen::Vector3f& d = directions[first + k];
-      cosine[k] = d.dot(normal);
-      packet.valid[k] = cosine[k] > 0;
-      any |= cosine[k] > 0;
+      cosine[k] = x[k] * normal.x() + (y[k] * normal.y() + z[k] * normal.z());
+      packet.Choose(k, cosine[k] > 0);
+      any |= packet.valid[k];
     }
-    if (!any) continue;
-    for (std::size_t k = 0; k < RayPacket::kSize; ++k) {
-      const Eigen::Vector3f& d = directions[first + k];
-      packet.Set(k, origin, d);
-    }
+    if (any == 0) continue;
+    std::copy_n(x, RayPacket::kSize, packet.dx);
+    std::copy_n(y, RayPacket::kSize, packet.dy);
+    std::copy_n(z, RayPacket::kSize, packet.dz);
+    std::fill_n(packet.far, RayPacket::kSize, kEndless);
     visit(first, packet, cosine);
   }
 }

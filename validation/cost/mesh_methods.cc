@@ -84,14 +84,14 @@ class EmbreeLens {
     for (std::size_t first = 0; first < directions_.size(); first += kSize) {
       for (std::size_t k = 0; k < kSize; ++k) {
         const std::size_t i = std::min(first + k, directions_.size() - 1);
-        packet.valid[k] = first + k < directions_.size() ? -1 : 0;
+        packet.Choose(k, first + k < directions_.size());
         Set(packet, k, eye, directions_[i]);
       }
       meet(false, packet, normals);
       for (std::size_t k = 0; k < kSize; ++k) {
         if (!packet.valid[k]) continue;
         if (packet.object[k] == SceneObject::kNone) {
-          packet.valid[k] = 0;
+          packet.Choose(k, false);
           exits_[first + k].setZero();
           continue;
         }

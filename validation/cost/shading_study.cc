@@ -84,7 +84,7 @@ Light Gather(const ShadingScene& scene, const Environment& environment, const Su
     for (std::size_t k = 0; k < RayPacket::kSize; ++k) {
       const bool valid = first + k < set.directions.size();
       const Eigen::Vector3f d = basis * set.directions[valid ? first + k : first];
-      packet.valid[k] = valid;
+      packet.Choose(k, valid);
       packet.Set(k, origin, d);
     }
     scene.rays.Occluded16(RaySet::kFrame, packet);
@@ -175,7 +175,7 @@ Light GatherImportance(const ShadingScene& scene, const Environment& environment
   std::size_t filled = 0;
   std::array<Eigen::Vector3f, RayPacket::kSize> value;
   const auto flush = [&] {
-    for (std::size_t k = filled; k < RayPacket::kSize; ++k) packet.valid[k] = 0;
+    for (std::size_t k = filled; k < RayPacket::kSize; ++k) packet.Choose(k, false);
     scene.rays.Occluded16(RaySet::kFrame, packet);
     for (std::size_t k = 0; k < filled; ++k) {
       light.without += value[k];
@@ -191,7 +191,7 @@ Light GatherImportance(const ShadingScene& scene, const Environment& environment
     const Eigen::Vector3f world = scene.world_from_head * d;
     const double density = (1 - share) * c / kPi + share * sampler.Density(world);
     value[filled] = float(c / density) * environment.Radiance(world);
-    packet.valid[filled] = 1;
+    packet.Choose(filled, true);
     packet.Set(filled, origin, d);
     if (++filled == RayPacket::kSize) flush();
   };
