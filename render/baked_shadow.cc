@@ -14,8 +14,6 @@
 namespace lorgnette {
 namespace {
 
-constexpr int kOpenDirections = 256;
-
 // Enough of the frame's vertices to tell distances to a few mm.
 std::vector<Eigen::Vector3f> SomeVertices(const TriangleMesh& frame) {
   constexpr std::size_t kVertices = 512;
@@ -47,14 +45,16 @@ BakedShadow BakedShadow::Bake(const EmbreeScene& scene, const TriangleMesh& face
   baked.lattice_ = FaceLattice(face, frame, options.spacing_near_mm, options.spacing_far_mm);
   const std::vector<LatticePoint>& points = baked.lattice_.points();
 
-  baked.BakeOpenLight(scene, face, options);
+  const std::vector<Eigen::Vector3f> sphere = SphereDirections(options.directions);
+  baked.sphere_ = DirectionColumns(sphere);
+  if (options.sees_face) baked.views_.emplace(scene, face, baked.sphere_);
+  baked.BakeOpenLight(face, sphere);
 
-  baked.sphere_ = DirectionColumns(SphereDirections(options.directions));
-  baked.sees_face_ = options.sees_face;
   std::vector<Lists> lists(points.size());
   const auto trace = [&](const std::vector<std::uint32_t>& which) {
     tbb::parallel_for(std::size_t(0), which.size(), [&](std::size_t k) {
-      lists[which[k]] = ListBlocked(scene, baked.sphere_, points[which[k]], options.sees_face);
+      const LatticePoint& at = points[which[k]];
+      lists[which[k]] = baked.ListBlocked(scene, at, face.triangles[at.triangle]);
     });
   };
   // A point between two others is traced where they do not see about the same of the frame.
@@ -105,15 +105,14 @@ BakedShadow BakedShadow::Bake(const EmbreeScene& scene, const TriangleMesh& face
   return baked;
 }
 
-BakedShadow::Lists BakedShadow::ListBlocked(const EmbreeScene& scene,
-                                            const DirectionColumns& sphere, const LatticePoint& at,
-                                            bool sees_face) {
+BakedShadow::Lists BakedShadow::ListBlocked(const EmbreeScene& scene, const LatticePoint& at,
+                                            const Eigen::Vector3i& corners) const {
   thread_local std::vector<Blocked> thread_blocked, thread_hidden;
   std::vector<Blocked>&blocked = thread_blocked, &hidden = thread_hidden;
   blocked.clear();
   hidden.clear();
   std::int32_t above = 0;
-  ForHemispherePackets(sphere, at.position + kFrameLift_mm * at.normal, at.normal,
+  ForHemispherePackets(sphere_, at.position + kFrameLift_mm * at.normal, at.normal,
                        [&](std::size_t first, RayPacket& packet, const float* cosine) {
                          scene.Occluded16(RaySet::kFrame, packet);
                          // Most packets pass the frame.
@@ -132,22 +131,16 @@ BakedShadow::Lists BakedShadow::ListBlocked(const EmbreeScene& scene,
   Lists lists;
   lists.above = std::uint32_t(above);
   lists.buried = blocked.size() == lists.above;
-  if (sees_face) {
+  if (views_) {
     // Those that the face hides go behind the others.
-    const Eigen::Vector3f origin = at.position + kFaceLift_mm * at.normal;
+    thread_local std::vector<std::uint8_t> is_hidden;
+    FindHidden(scene, at, corners, blocked, is_hidden);
     std::size_t kept = 0;
-    RayPacket packet;
-    for (std::size_t first = 0; first < blocked.size(); first += RayPacket::kSize) {
-      PointToward(sphere, origin, blocked, first, packet);
-      scene.Occluded16(RaySet::kHead, packet);
-      for (std::size_t k = 0; k < RayPacket::kSize; ++k) {
-        if (!packet.valid[k]) continue;
-        const Blocked b = blocked[first + k];
-        if (packet.far[k] < 0) {
-          hidden.push_back(b);
-        } else {
-          blocked[kept++] = b;
-        }
+    for (std::size_t k = 0; k < blocked.size(); ++k) {
+      if (is_hidden[k]) {
+        hidden.push_back(blocked[k]);
+      } else {
+        blocked[kept++] = blocked[k];
       }
     }
     blocked.resize(kept);
@@ -157,7 +150,7 @@ BakedShadow::Lists BakedShadow::ListBlocked(const EmbreeScene& scene,
   lists.blocked.assign(blocked.begin(), blocked.end());
   lists.blocked.insert(lists.blocked.end(), hidden.begin(), hidden.end());
   for (std::size_t part = 0; part < 2; ++part) {
-    lists.bits[part].assign((sphere.size() + 63) / 64, 0);
+    lists.bits[part].assign((sphere_.size() + 63) / 64, 0);
     for (const Blocked& b : part == 0 ? blocked : hidden) {
       lists.bits[part][b.direction / 64] |= std::uint64_t(1) << (b.direction % 64);
     }
@@ -205,7 +198,7 @@ std::size_t BakedShadow::Follow(const EmbreeScene& scene,
     LatticePoint at = lattice_.points()[point.point];
     at.position = point.baked_at = moved[k].to;
     const bool buried = point.lists.buried;
-    point.lists = ListBlocked(scene, sphere_, at, sees_face_);
+    point.lists = ListBlocked(scene, at, point.vertices);
     if (point.lists.buried != buried) other_buried = true;
   });
   if (other_buried) FindNeighbours();
@@ -228,23 +221,37 @@ void BakedShadow::FindNeighbours() {
   }
 }
 
-void BakedShadow::PointToward(const DirectionColumns& sphere, const Eigen::Vector3f& origin,
-                              const std::vector<Blocked>& blocked, std::size_t first,
-                              RayPacket& packet) {
-  for (std::size_t k = 0; k < RayPacket::kSize; ++k) {
-    const bool traced = first + k < blocked.size();
-    packet.Choose(k, traced);
-    packet.Set(k, origin, sphere[blocked[traced ? first + k : first].direction]);
+void BakedShadow::FindHidden(const EmbreeScene& scene, const LatticePoint& at,
+                             const Eigen::Vector3i& corners, const std::vector<Blocked>& blocked,
+                             std::vector<std::uint8_t>& hidden) const {
+  const Eigen::Vector3f origin = at.position + kFaceLift_mm * at.normal;
+  hidden.resize(blocked.size());
+  RayPacket packet;
+  std::size_t asked[RayPacket::kSize];
+  std::size_t filled = 0;
+  const auto trace = [&] {
+    for (std::size_t k = 0; k < RayPacket::kSize; ++k) packet.Choose(k, k < filled);
+    scene.Occluded16(RaySet::kHead, packet);
+    for (std::size_t k = 0; k < filled; ++k) hidden[asked[k]] = packet.far[k] < 0;
+    filled = 0;
+  };
+  for (std::size_t i = 0; i < blocked.size(); ++i) {
+    const std::size_t direction = blocked[i].direction;
+    const FaceViews::View view = views_->FromTriangle(corners, direction);
+    hidden[i] = view == FaceViews::View::kHidden;
+    if (view != FaceViews::View::kUnknown) continue;
+    packet.Set(filled, origin, sphere_[direction]);
+    asked[filled] = i;
+    if (++filled == RayPacket::kSize) trace();
   }
+  if (filled > 0) trace();
 }
 
-void BakedShadow::BakeOpenLight(const EmbreeScene& scene, const TriangleMesh& face,
-                                const ShadowOptions& options) {
-  const std::vector<Eigen::Vector3f> sphere = SphereDirections(kOpenDirections);
-  const DirectionColumns columns(sphere);
+void BakedShadow::BakeOpenLight(const TriangleMesh& face,
+                                const std::vector<Eigen::Vector3f>& sphere) {
   std::vector<Harmonics> harmonics;
   for (const Eigen::Vector3f& d : sphere) harmonics.push_back(EvaluateHarmonics(d));
-  const float solid_angle = float(4 * kPi) / kOpenDirections;
+  const float solid_angle = float(4 * kPi) / float(sphere.size());
   open_.resize(face.positions.size());
   tbb::parallel_for(std::size_t(0), face.positions.size(), [&](std::size_t i) {
     const Eigen::Vector3f normal = face.normals[i].cast<float>();
@@ -252,21 +259,18 @@ void BakedShadow::BakeOpenLight(const EmbreeScene& scene, const TriangleMesh& fa
     point.seen.fill(0);
     point.all.fill(0);
     float open = 0, total = 0;
-    ForHemispherePackets(columns, face.positions[i].cast<float>() + kFaceLift_mm * normal, normal,
-                         [&](std::size_t first, RayPacket& packet, const float* cosine) {
-                           if (options.sees_face) scene.Occluded16(RaySet::kHead, packet);
-                           for (std::size_t k = 0; k < RayPacket::kSize; ++k) {
-                             if (!packet.valid[k]) continue;
-                             const bool past_face = packet.far[k] >= 0;
-                             total += cosine[k];
-                             if (past_face) open += cosine[k];
-                             for (std::size_t j = 0; j < kHarmonics; ++j) {
-                               const float term = solid_angle * cosine[k] * harmonics[first + k][j];
-                               point.all[j] += term;
-                               if (past_face) point.seen[j] += term;
-                             }
-                           }
-                         });
+    for (std::size_t k = 0; k < sphere.size(); ++k) {
+      const float cosine = sphere[k].dot(normal);
+      if (!(cosine > 0)) continue;
+      const bool past_face = !views_ || views_->FromVertex(i, k) != FaceViews::View::kHidden;
+      total += cosine;
+      if (past_face) open += cosine;
+      for (std::size_t j = 0; j < kHarmonics; ++j) {
+        const float term = solid_angle * cosine * harmonics[k][j];
+        point.all[j] += term;
+        if (past_face) point.seen[j] += term;
+      }
+    }
     point.share = total > 0 ? open / total : 0;
   });
 }

@@ -216,38 +216,48 @@ Result<HeadScene> HeadScene::Build(const Eyewear& eyewear, const TriangleMesh& f
   LG_ASSIGN(EmbreeScene scene, *std::move(built));
 
   std::vector<LensSolid> lenses;
+  for (std::optional<LensSolid>& made : solids) lenses.push_back(*std::move(made));
   std::vector<LensLook> looks;
-  std::vector<double> rim_depth;
-  for (std::optional<LensSolid>& made : solids) {
-    const LensSolid& lens = lenses.emplace_back(*std::move(made));
+  for (const LensSolid& lens : lenses) {
     looks.push_back(
         LookOf(options.finish, lens.lens().medium.index_d, lens.high().y(), lens.low().y()));
-    rim_depth.push_back(RimDepth(lens, frame.mesh));
   }
 
-  BakedIrradiance frame_light = BakedIrradiance::Bake(scene, frame.mesh, kFrameDirections);
-
+  std::vector<double> rim_depth(lenses.size());
+  BakedIrradiance frame_light;
+  VisibleMesh visible;
   std::optional<BakedShadow> baked_shadow;
   std::optional<PaperShadow> paper_shadow;
   std::optional<FaceLattice> gather_lattice;
-  if (options.shadow == ShadowMode::kBaked) {
-    ShadowOptions shadow;
-    shadow.sees_face = options.shadow_sees_face;
-    shadow.directions = directions;
-    shadow.spacing_near_mm = options.shadow_spacing_mm;
-    shadow.spacing_far_mm = 4 * options.shadow_spacing_mm;
-    baked_shadow = BakedShadow::Bake(scene, smooth_face, frame.mesh, shadow);
-  } else if (options.shadow == ShadowMode::kPaper) {
-    paper_shadow.emplace(options.shadow_rays, options.shadow_sees_face);
-  } else if (options.shadow == ShadowMode::kGathered) {
-    gather_lattice.emplace(smooth_face, frame.mesh, options.shadow_spacing_mm,
-                           4 * options.shadow_spacing_mm);
-  }
+  const auto cast_shadow = [&] {
+    const double near_mm = options.shadow_spacing_mm, far_mm = 4 * near_mm;
+    if (options.shadow == ShadowMode::kBaked) {
+      ShadowOptions shadow;
+      shadow.sees_face = options.shadow_sees_face;
+      shadow.directions = directions;
+      shadow.spacing_near_mm = near_mm;
+      shadow.spacing_far_mm = far_mm;
+      baked_shadow = BakedShadow::Bake(scene, smooth_face, frame.mesh, shadow);
+    } else if (options.shadow == ShadowMode::kPaper) {
+      paper_shadow.emplace(options.shadow_rays, options.shadow_sees_face);
+    } else if (options.shadow == ShadowMode::kGathered) {
+      gather_lattice.emplace(smooth_face, frame.mesh, near_mm, far_mm);
+    }
+  };
+  // Each has stretches for one thread; side by side they leave none idle.
+  tbb::parallel_invoke(
+      [&] { frame_light = BakedIrradiance::Bake(scene, frame.mesh, kFrameDirections); },
+      cast_shadow,
+      [&] {
+        for (std::size_t i = 0; i < lenses.size(); ++i) {
+          rim_depth[i] = RimDepth(lenses[i], frame.mesh);
+        }
+        visible = JoinVisible(smooth_face, occluder, frame.mesh);
+      });
 
   std::vector<Eigen::Vector3f> vertices, normals;
   for (const Eigen::Vector3d& p : smooth_face.positions) vertices.push_back(p.cast<float>());
   for (const Eigen::Vector3d& n : smooth_face.normals) normals.push_back(n.cast<float>());
-  VisibleMesh visible = JoinVisible(smooth_face, occluder, frame.mesh);
   return HeadScene{options,
                    std::move(scene),
                    smooth_face,

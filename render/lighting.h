@@ -8,6 +8,7 @@
 
 #include <Eigen/Core>
 #include <cstdint>
+#include <optional>
 #include <vector>
 
 #include "base/mesh.h"
@@ -15,6 +16,7 @@
 #include "render/embree_scene.h"
 #include "render/environment.h"
 #include "render/face_lattice.h"
+#include "render/face_views.h"
 #include "render/visibility.h"
 
 namespace lorgnette {
@@ -124,21 +126,21 @@ class BakedShadow {
     float to_frame_mm;  // nearest distance, to a few mm
     Lists lists;
   };
-  static Lists ListBlocked(const EmbreeScene& scene, const DirectionColumns& sphere,
-                           const LatticePoint& at, bool sees_face);
-  static void PointToward(const DirectionColumns& sphere, const Eigen::Vector3f& origin,
-                          const std::vector<Blocked>& blocked, std::size_t first,
-                          RayPacket& packet);
+  //   corners  vertices of the point's triangle
+  Lists ListBlocked(const EmbreeScene& scene, const LatticePoint& at,
+                    const Eigen::Vector3i& corners) const;
+  // Whether the face hides each of the blocked directions.
+  void FindHidden(const EmbreeScene& scene, const LatticePoint& at, const Eigen::Vector3i& corners,
+                  const std::vector<Blocked>& blocked, std::vector<std::uint8_t>& hidden) const;
   void FindNeighbours();
-  void BakeOpenLight(const EmbreeScene& scene, const TriangleMesh& face,
-                     const ShadowOptions& options);
+  void BakeOpenLight(const TriangleMesh& face, const std::vector<Eigen::Vector3f>& sphere);
 
   FaceLattice lattice_;
   std::vector<FaceLattice::Between> means_;  // points that take the mean of two before them
   std::vector<Open> open_;                   // one a vertex
   std::vector<Touched> touched_;
   DirectionColumns sphere_;
-  bool sees_face_ = true;
+  std::optional<FaceViews> views_;  // of the face at rest, where S_noGlasses sees it
 };
 
 }  // namespace lorgnette
