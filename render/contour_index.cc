@@ -88,25 +88,33 @@ void ContourIndex::IndexEdges() {
 }
 
 void ContourIndex::MeasureDistances() {
-  // Circles around runs of edges, most of which lie farther off than the nearest found so far.
-  struct Run {
-    std::size_t first, end;  // edges
-    Eigen::Vector2d centre;
-    double radius;
+  constexpr double kRounding = 1 + 1e-9;
+  // Circles around edges and around runs of them, most of which lie farther off than the nearest
+  // edge found so far.
+  struct Circle {
+    Eigen::Vector2d centre{0, 0};
+    double radius = 0;
+    bool Reaches(const Eigen::Vector2d& p, double distance) const {
+      const double farthest = radius + distance;
+      return (centre - p).squaredNorm() < farthest * farthest;
+    }
   };
   const std::size_t n = polygon_.size();
-  std::vector<Run> runs;
-  for (std::size_t first = 0; first < n; first += kRunEdges) {
-    Run run{first, std::min(first + kRunEdges, n), Eigen::Vector2d::Zero(), 0};
-    for (std::size_t i = run.first; i <= run.end; ++i) run.centre += polygon_[i % n];
-    run.centre /= double(run.end - run.first + 1);
-    for (std::size_t i = run.first; i <= run.end; ++i) {
-      run.radius = std::max(run.radius, (polygon_[i % n] - run.centre).norm());
+  // Around the points from the first to the last, which may be past the end.
+  const auto around = [&](std::size_t first, std::size_t last) {
+    Circle circle;
+    for (std::size_t i = first; i <= last; ++i) circle.centre += polygon_[i % n];
+    circle.centre /= double(last - first + 1);
+    for (std::size_t i = first; i <= last; ++i) {
+      circle.radius = std::max(circle.radius, (polygon_[i % n] - circle.centre).norm());
     }
-    constexpr double kRounding = 1 + 1e-9;
-    run.radius *= kRounding;
-    runs.push_back(run);
-  }
+    circle.radius *= kRounding;
+    return circle;
+  };
+  std::vector<Circle> edges, runs;
+  for (std::size_t i = 0; i < n; ++i) edges.push_back(around(i, i + 1));
+  for (std::size_t i = 0; i < n; i += kRunEdges)
+    runs.push_back(around(i, std::min(i + kRunEdges, n)));
   std::size_t likely = 0;  // the run that was nearest to the cell before
   std::vector<double> crossings;
   for (int row = 0; row < rows_; ++row) {
@@ -117,25 +125,26 @@ void ContourIndex::MeasureDistances() {
       if ((a.y() > y) == (b.y() > y)) continue;
       crossings.push_back(a.x() + (y - a.y()) / (b.y() - a.y()) * (b.x() - a.x()));
     }
+    double nearest = std::numeric_limits<double>::infinity();
     for (int column = 0; column < columns_; ++column) {
       const Eigen::Vector2d centre(grid_low_.x() + cell_ * (column + 0.5), y);
-      double nearest2 = std::numeric_limits<double>::infinity();
+      // No farther than from the cell before and on to this one.
+      nearest = (nearest + cell_) * kRounding;
       const std::size_t start = likely;
       for (std::size_t k = 0; k < runs.size(); ++k) {
         const std::size_t at = (start + k) % runs.size();
-        const Run& run = runs[at];
-        const double least = (run.centre - centre).norm() - run.radius;
-        if (least > 0 && least * least >= nearest2) continue;
-        for (std::size_t i = run.first; i < run.end; ++i) {
+        if (!runs[at].Reaches(centre, nearest)) continue;
+        for (std::size_t i = at * kRunEdges; i < std::min((at + 1) * kRunEdges, n); ++i) {
+          if (!edges[i].Reaches(centre, nearest)) continue;
           const double d2 = SquaredDistanceToSegment(centre, polygon_[i], polygon_[(i + 1) % n]);
-          if (d2 >= nearest2) continue;
-          nearest2 = d2;
+          if (d2 >= nearest * nearest) continue;
+          nearest = std::sqrt(d2);
           likely = at;
         }
       }
       const auto to_the_left = std::count_if(crossings.begin(), crossings.end(),
                                              [&](double x) { return x > centre.x(); });
-      distance_.push_back(float((to_the_left % 2 != 0 ? 1 : -1) * std::sqrt(nearest2)));
+      distance_.push_back(float((to_the_left % 2 != 0 ? 1 : -1) * nearest));
     }
   }
 }
