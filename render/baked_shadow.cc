@@ -14,22 +14,37 @@
 namespace lorgnette {
 namespace {
 
-// Enough of the frame's vertices to tell distances to a few mm.
-std::vector<Eigen::Vector3f> SomeVertices(const TriangleMesh& frame) {
-  constexpr std::size_t kVertices = 512;
-  std::vector<Eigen::Vector3f> some;
-  const std::size_t step = std::max<std::size_t>(1, frame.positions.size() / kVertices);
-  for (std::size_t i = 0; i < frame.positions.size(); i += step) {
-    some.push_back(frame.positions[i].cast<float>());
+// Enough of the frame's vertices to tell distances to a few mm, by columns.
+class SomeVertices {
+ public:
+  explicit SomeVertices(const TriangleMesh& frame) {
+    const std::size_t n = frame.positions.size();
+    for (std::size_t i = 0; i < kVertices && n > 0; ++i) {
+      const Eigen::Vector3f p = frame.positions[i * n / kVertices].cast<float>();
+      x_[i] = p.x();
+      y_[i] = p.y();
+      z_[i] = p.z();
+    }
   }
-  return some;
-}
+  float DistanceToNearest(const Eigen::Vector3f& from) const {
+    // In lanes, which the compiler puts side by side; it does not so for a single minimum.
+    constexpr std::size_t kLanes = 16;
+    float nearest[kLanes];
+    std::fill_n(nearest, kLanes, std::numeric_limits<float>::max());
+    for (std::size_t i = 0; i < kVertices; i += kLanes) {
+      for (std::size_t k = 0; k < kLanes; ++k) {
+        const float dx = x_[i + k] - from.x(), dy = y_[i + k] - from.y(), dz = z_[i + k] - from.z();
+        const float squared = dx * dx + dy * dy + dz * dz;
+        nearest[k] = squared < nearest[k] ? squared : nearest[k];
+      }
+    }
+    return std::max(std::sqrt(*std::min_element(nearest, nearest + kLanes)), 1.0f);
+  }
 
-float DistanceToNearest(const std::vector<Eigen::Vector3f>& points, const Eigen::Vector3f& from) {
-  float nearest = std::numeric_limits<float>::max();
-  for (const Eigen::Vector3f& p : points) nearest = std::min(nearest, (p - from).squaredNorm());
-  return std::max(std::sqrt(nearest), 1.0f);
-}
+ private:
+  static constexpr std::size_t kVertices = 512;
+  float x_[kVertices] = {}, y_[kVertices] = {}, z_[kVertices] = {};
+};
 
 }  // namespace
 
@@ -92,10 +107,10 @@ BakedShadow BakedShadow::Bake(const EmbreeScene& scene, const TriangleMesh& face
     baked.touched_.push_back(
         {i, face.triangles[at.triangle], at.u, at.v, i, at.position, 0, std::move(lists[i])});
   }
-  const std::vector<Eigen::Vector3f> some = SomeVertices(frame);
+  const SomeVertices some(frame);
   tbb::parallel_for(std::size_t(0), baked.touched_.size(), [&](std::size_t k) {
     Touched& point = baked.touched_[k];
-    point.to_frame_mm = DistanceToNearest(some, point.baked_at);
+    point.to_frame_mm = some.DistanceToNearest(point.baked_at);
   });
   baked.FindNeighbours();
   for (const FaceLattice::Between& b : baked.means_) {
