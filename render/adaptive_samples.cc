@@ -17,7 +17,11 @@ constexpr float kShadowContrast = 0.02f;
 
 void PlaceSamples(const PixelBox& area, int side, const PixelFlags* wanted,
                   std::vector<CameraSample>& samples) {
-  samples.clear();
+  const std::size_t pixels = wanted != nullptr
+                                 ? std::size_t(std::count(wanted->begin(), wanted->end(), true))
+                                 : std::size_t(area.x1 - area.x0) * std::size_t(area.y1 - area.y0);
+  samples.resize(pixels * std::size_t(side) * std::size_t(side));
+  CameraSample* next = samples.data();
   const int block = std::max(1, 4 / side);
   const float step = 1 / float(side);
   for (int by = area.y0; by < area.y1; by += block) {
@@ -28,7 +32,8 @@ void PlaceSamples(const PixelBox& area, int side, const PixelFlags* wanted,
           if (wanted != nullptr && !(*wanted)[pixel]) continue;
           for (int row = 0; row < side; ++row) {
             for (int column = 0; column < side; ++column) {
-              CameraSample& sample = samples.emplace_back();
+              CameraSample& sample = *next++;
+              sample = CameraSample{};
               sample.x = float(x) + (float(column) + 0.5f) * step;
               sample.y = float(y) + (float(row) + 0.5f) * step;
               sample.pixel = std::uint16_t(pixel);

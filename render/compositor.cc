@@ -139,7 +139,7 @@ Compositor::Sitting Compositor::Sit(const ImageRgb8& input, const Camera& camera
                                     const Eigen::Isometry3d& camera_from_head) const {
   ScreenScene screen = ProjectScene(scene_->head, camera, camera_from_head);
   // Refracted rays mostly read near by; what lies farther is decoded when it is read.
-  const PixelBox box = Grown(screen.mask.Bounds(), 2 * kTileSide);
+  const PixelBox box = Grown(screen.mask.Bounds(), 4 * kTileSide);
   return {scene_->head, InputPicture(input, box), std::move(screen), camera, camera_from_head};
 }
 

@@ -490,11 +490,12 @@ void LensPass::TraceColours() {
     batch_.colour.Trace(head_.scene, RaySet::kAll);
     const int c = bands[k].channel;
     for (std::size_t j = 0; j < n; ++j) {
-      const LensRay& r = batch_.regular[batch_.main_of[batch_.parted[j]]];
+      const std::size_t main = batch_.parted[j];
+      const LensRay& r = batch_.regular[batch_.main_of[main]];
       CameraSample& sample = samples_[r.sample];
       const Eigen::Vector3f colour = follower_.AtHit(
           batch_.colour.hits[j], batch_.colour.origins[j], batch_.colour.directions[j],
-          /*transmitted=*/true, pixels_[sample.pixel]);
+          /*transmitted=*/true, pixels_[sample.pixel], batch_.gloss_ends[main]);
       sample.inserted[c] += share * r.through[c] * colour[c];
     }
   }

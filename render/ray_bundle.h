@@ -57,6 +57,18 @@ struct RayBundle {
     directions.push_back(direction);
     far.push_back(length);
   }
+  // n rays, each to be Set.
+  void Resize(std::size_t n) {
+    origins.resize(n);
+    directions.resize(n);
+    far.resize(n);
+  }
+  void Set(std::size_t i, const Eigen::Vector3f& origin, const Eigen::Vector3f& direction,
+           float length = kEndless) {
+    origins[i] = origin;
+    directions[i] = direction;
+    far[i] = length;
+  }
   void Fill(std::size_t first, RayPacket& packet) const {
     const std::size_t n = origins.size();
     for (std::size_t k = 0; k < RayPacket::kSize; ++k) {

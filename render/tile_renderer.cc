@@ -28,12 +28,12 @@ void TileRenderer::TracePrimary(std::size_t tile, const std::vector<CameraSample
   if (screen_.complete) {
     batch.raster.Trace(head_.visible, screen_, tile, samples, batch.primary.hits);
   }
-  batch.primary.Clear();
+  batch.primary.Resize(samples.size());
   for (std::size_t i = 0; i < samples.size(); ++i) {
     const Eigen::Vector3f d((samples[i].x - float(camera_.cx)) * inverse_fx,
                             (samples[i].y - float(camera_.cy)) * inverse_fy, 1);
     const float length = d.norm();
-    batch.primary.Add(eye, head_from_camera_ * (d / length));
+    batch.primary.Set(i, eye, head_from_camera_ * (d / length));
     if (screen_.complete) batch.primary.hits[i].distance *= length;
   }
   if (!screen_.complete) batch.primary.Trace(head_.scene, RaySet::kAll);
