@@ -4,12 +4,16 @@
 #include <algorithm>
 #include <cstdlib>
 
+#include "render/color.h"
+
 namespace lorgnette {
 namespace {
 
 // Pixels of the frame that differ from a neighbour by more than this many code values take all
 // their samples.
-constexpr int kFrameContrast = 6;
+constexpr int kFrameContrast = 12;
+// Head beside background, or background beside head: of their factors, of 255.
+constexpr int kFactorContrast = 5;
 // Of the shadow's factor between neighbours on the grid: a code value or two.
 constexpr float kShadowContrast = 0.02f;
 
@@ -45,13 +49,35 @@ void PlaceSamples(const PixelBox& area, int side, const PixelFlags* wanted,
   }
 }
 
+Glance Glance::At(const CameraSample& sample, bool is_edge) {
+  if (is_edge) return {sample.kind, 0, true};
+  switch (ClassOf(sample.kind)) {
+    case SampleClass::kInput:
+      return {sample.kind, std::uint8_t(255 * std::clamp(sample.direct.mean(), 0.0f, 1.0f)), false};
+    case SampleClass::kFrame:
+      return {sample.kind, CodeFromLinear(sample.inserted.mean()), false};
+    default:
+      return {sample.kind, 0, false};
+  }
+}
+
 PixelFlags PixelsToRefine(const PixelBox& area, const PixelBox& box,
                           const std::vector<Glance>& glances) {
   using Kind = CameraSample::Kind;
   const std::size_t width = std::size_t(box.x1 - box.x0);
   const auto differ = [](const Glance& own, const Glance& other) {
-    return other.kind != own.kind ||
-           (own.kind == Kind::kFrame && std::abs(int(own.code) - int(other.code)) > kFrameContrast);
+    const SampleClass its = ClassOf(own.kind);
+    if (its != ClassOf(other.kind)) return true;
+    if (other.edge) return false;
+    const int apart = std::abs(int(own.code) - int(other.code));
+    switch (its) {
+      case SampleClass::kInput:
+        return own.kind != other.kind && apart > kFactorContrast;
+      case SampleClass::kFrame:
+        return apart > kFrameContrast;
+      default:
+        return own.kind != other.kind;
+    }
   };
   PixelFlags wanted{};
   for (int y = area.y0; y < area.y1; ++y) {
@@ -61,7 +87,7 @@ PixelFlags PixelsToRefine(const PixelBox& area, const PixelBox& box,
       const Glance* const own = row + (x - box.x0);
       const std::size_t left = x > box.x0, right = x + 1 < box.x1;
       wanted[TileIndex(x - area.x0, y - area.y0)] =
-          own->kind == Kind::kLensElsewhere || differ(*own, *(own - left)) ||
+          own->edge || own->kind == Kind::kLensElsewhere || differ(*own, *(own - left)) ||
           differ(*own, own[right]) || differ(*own, *(own - above)) || differ(*own, own[below]);
     }
   }

@@ -3,7 +3,6 @@
 #pragma once
 
 #include <Eigen/Core>
-#include <array>
 #include <cstdint>
 #include <vector>
 
@@ -12,23 +11,22 @@
 
 namespace lorgnette {
 
-// One of each pixel of a tile.
-using PixelFlags = std::array<bool, std::size_t(kTileSide) * kTileSide>;
-
 // Samples of the pixels that `wanted` names (of all: null), side x side a pixel, in blocks of
 // pixels that fill a packet of 16.
 void PlaceSamples(const PixelBox& area, int side, const PixelFlags* wanted,
                   std::vector<CameraSample>& samples);
 
-// Adaptive: what the ray through a pixel's centre met, and how bright it was, encoded.
+// Adaptive: what the ray through a pixel's centre met.
 struct Glance {
   CameraSample::Kind kind = CameraSample::Kind::kBackground;
-  std::uint8_t code = 0;
+  std::uint8_t code = 0;  // of a frame its light, encoded; of head and background their factor
+  bool edge = false;      // left out so far (TileRenderer::Trace): no code, of glass any kind
+  static Glance At(const CameraSample& sample, bool is_edge);
 };
 
-// Pixels beside which (left, right, above, below) something else is met, and those of the frame
-// with some contrast. What differs at a corner alone is a small part of the pixel: with corners a
-// fourth more pixels were refined, for 0.2 to 0.6 dB.
+// Pixels beside which (left, right, above, below) something else is met, unless both show the input
+// about as much darkened; and those of the frame with some contrast. What differs at a corner alone
+// is a small part of the pixel: with corners a fourth more pixels were refined, for 0.2 to 0.6 dB.
 //   glances  of the pixels of `box`, row by row; beyond it they are taken to go on as at its border
 PixelFlags PixelsToRefine(const PixelBox& area, const PixelBox& box,
                           const std::vector<Glance>& glances);

@@ -25,4 +25,12 @@ struct CameraSample {
   Eigen::Vector3f direct{1, 1, 1};    // factor of the input pixel
 };
 
+// What shows the input picture, darkened at most; the frame; or glass.
+enum class SampleClass : std::uint8_t { kInput, kFrame, kGlass };
+inline SampleClass ClassOf(CameraSample::Kind kind) {
+  return kind <= CameraSample::Kind::kHead    ? SampleClass::kInput
+         : kind == CameraSample::Kind::kFrame ? SampleClass::kFrame
+                                              : SampleClass::kGlass;
+}
+
 }  // namespace lorgnette

@@ -283,7 +283,10 @@ RenderCounts Compositor::Draw(const Sitting& sitting, const PictureEffects& effe
       bool changed = false;
       for (std::size_t x = 0; x < across; ++x) {
         const Eigen::Vector3f& f = factor[first + x];
-        glance(area.x0 + int(x), y) = {kind[first + x], 0};
+        CameraSample seen;
+        seen.kind = kind[first + x];
+        seen.direct = f;
+        glance(area.x0 + int(x), y) = Glance::At(seen, false);
         const bool darker = f.x() != 1 || f.y() != 1 || f.z() != 1;
         counts_of[i].shadowed_pixels += darker;
         changed = changed || darker;
@@ -321,16 +324,17 @@ RenderCounts Compositor::Draw(const Sitting& sitting, const PictureEffects& effe
       states[s.pixel].seed = y * 7919u + x * 104729u;
       states[s.pixel].side = std::uint8_t(here);
     }
-    renderer.Trace(tile, samples, states);
+    PixelFlags edges{};
+    renderer.Trace(tile, samples, states, adaptive && !refine ? &edges : nullptr);
     const float share = 1.0f / float(here * here);
     for (const CameraSample& s : samples) sums[s.pixel].Add(s, share);
     RenderCounts& count = counts_of[i];
     for (int y = area.y0; y < area.y1; ++y) {
       for (int x = area.x0; x < area.x1; ++x) {
         const std::size_t pixel = TileIndex(x - area.x0, y - area.y0);
-        if (refine && !wanted[pixel]) continue;
+        if (refine ? !wanted[pixel] : edges[pixel]) continue;
         const PixelSum& sum = sums[pixel];
-        if (!refine) {
+        if (!refine || glance(x, y).edge) {
           count.lens_pixels += sum.lens;
           count.frame_pixels += sum.frame;
           count.shadowed_pixels += sum.changed && !sum.lens && !sum.frame;
@@ -345,9 +349,7 @@ RenderCounts Compositor::Draw(const Sitting& sitting, const PictureEffects& effe
     }
     if (adaptive && !refine) {
       for (const CameraSample& s : samples) {
-        const bool frame = s.kind == CameraSample::Kind::kFrame;
-        glance(int(s.x), int(s.y)) = {s.kind,
-                                      frame ? CodeFromLinear(s.inserted.mean()) : std::uint8_t{0}};
+        glance(int(s.x), int(s.y)) = Glance::At(s, edges[s.pixel]);
       }
     }
   };

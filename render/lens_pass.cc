@@ -57,9 +57,13 @@ LensPass::LensPass(const HeadScene& head, const RayFollower& follower, const Cam
       head_from_lens_(solid_.head_from_lens().linear().cast<float>()),
       lens_in_head_(solid_.head_from_lens().translation().cast<float>()) {}
 
-void LensPass::Trace() {
-  if (!ThroughKernel()) return;
-  SortOut();
+void LensPass::Enter() {
+  batch_.regular.clear();
+  if (ThroughKernel()) SortOut();
+}
+
+void LensPass::Shade() {
+  if (batch_.regular.empty()) return;
   Divide();
   SendBack();
   Gather();
@@ -117,10 +121,9 @@ bool LensPass::ThroughKernel() {
 void LensPass::SortOut() {
   const ContourIndex& contour = solid_.contour();
   const double bevel = head_.options.bevel_mm;
-  batch_.regular.clear();
   for (std::size_t k = 0; k < batch_.sample_of.size(); ++k) {
     const std::uint32_t i = batch_.sample_of[k];
-    if (batch_.lens_of[i] == 3) continue;
+    if (batch_.lens_of[i] == kExactly) continue;
     const Eigen::Vector3f p1 = batch_.first.point(k), p2 = batch_.inside.point(k);
     const ContourIndex::Place at1 = contour.Locate(double(p1.x()), double(p1.y()));
     const ContourIndex::Place at2 = contour.Locate(double(p2.x()), double(p2.y()));
@@ -139,7 +142,7 @@ void LensPass::SortOut() {
     const std::optional<float> to_wall =
         through || total || !forward ? std::nullopt : WayToWall(k, at1, at2);
     if ((!through && !total && !to_wall) || batch_.lens_of[i] != 0 || !forward) {
-      batch_.lens_of[i] = 3;
+      batch_.lens_of[i] = kExactly;
       continue;
     }
     if (hit.hit() && hit.distance < entry) continue;

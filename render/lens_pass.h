@@ -21,9 +21,11 @@ class LensPass {
            const Eigen::Vector3d& eye, std::size_t lens, TileBatch& batch,
            std::vector<CameraSample>& samples, std::vector<PixelState>& pixels);
 
-  // Fills the samples that enter by the first surface, and batch.lens_of for them and for those
-  // that have to be traced exactly.
-  void Trace();
+  // Finds the samples that enter by the first surface (batch.regular), and batch.lens_of for them
+  // and for those that have to be traced exactly.
+  void Enter();
+  // Fills the samples of batch.regular.
+  void Shade();
 
  private:
   // The samples that may touch the glass, through the kernel. False: none does.

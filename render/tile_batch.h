@@ -42,11 +42,14 @@ enum class BackWay : std::uint8_t {
   kExact,     // anywhere
 };
 
+// Of a sample that is no lens's.
+inline constexpr std::uint8_t kExactly = 3;  // to be traced so
+inline constexpr std::uint8_t kLeftOut = 4;  // not to be traced
+
 struct TileBatch {
   TileRaster raster;
   RayBundle primary;
-  std::vector<std::uint8_t>
-      lens_of;  // one a sample: 0 none, 1 right, 2 left, 3 to be traced exactly
+  std::vector<std::uint8_t> lens_of;  // one a sample: 0 none, 1 right, 2 left, kExactly, kLeftOut
   // Lens kernel, lens frame.
   RayColumns in, exit, first, inside, second;
   std::vector<std::uint8_t> status;

@@ -2,6 +2,7 @@
 // The tiles of a picture that can change. Internal to render/.
 #pragma once
 
+#include <array>
 #include <cstddef>
 #include <cstdint>
 #include <vector>
@@ -15,6 +16,9 @@ inline constexpr int kTileSide = 16;  // pixels
 inline std::size_t TileIndex(int x, int y) {
   return std::size_t(y) * std::size_t(kTileSide) + std::size_t(x);
 }
+
+// One of each pixel of a tile.
+using PixelFlags = std::array<bool, std::size_t(kTileSide) * kTileSide>;
 
 enum TileContent : std::uint8_t {
   kTileShadow = 1,  // face that the frame can darken

@@ -2,7 +2,10 @@
 #include "render/tile_renderer.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <optional>
+#include <tuple>
 
 #include "optics/trace.h"
 #include "render/embree_scene.h"
@@ -136,27 +139,77 @@ void TileRenderer::TraceExactly(std::size_t i, const TileBatch& batch,
   pixel.band = 0;
 }
 
+void TileRenderer::LeaveOutEdges(std::vector<CameraSample>& samples, TileBatch& batch,
+                                 PixelFlags& edges) {
+  using Kind = CameraSample::Kind;
+  // Pixels outside the picture are like those beside them.
+  constexpr auto kOutside = Kind(0xff);
+  std::array<Kind, std::tuple_size_v<PixelFlags>> kinds;
+  kinds.fill(kOutside);
+  edges.fill(false);
+  for (std::size_t i = 0; i < samples.size(); ++i) {
+    const SceneHit& hit = batch.primary.hits[i];
+    kinds[samples[i].pixel] = batch.lens_of[i] != 0               ? Kind::kLensElsewhere
+                              : hit.object == SceneObject::kFrame ? Kind::kFrame
+                              : hit.hit()                         ? Kind::kHead
+                                                                  : Kind::kBackground;
+    edges[samples[i].pixel] = batch.lens_of[i] == kExactly;
+  }
+  for (const LensRay& r : batch.regular) {
+    if (r.way != LensWay::kThrough) edges[samples[r.sample].pixel] = true;
+  }
+  const auto compare = [&](std::size_t a, std::size_t b) {
+    const bool differ =
+        kinds[a] != kOutside && kinds[b] != kOutside && ClassOf(kinds[a]) != ClassOf(kinds[b]);
+    edges[a] = edges[a] || differ;
+    edges[b] = edges[b] || differ;
+  };
+  for (int y = 0; y < kTileSide; ++y) {
+    for (int x = 0; x < kTileSide; ++x) {
+      if (x + 1 < kTileSide) compare(TileIndex(x, y), TileIndex(x + 1, y));
+      if (y + 1 < kTileSide) compare(TileIndex(x, y), TileIndex(x, y + 1));
+    }
+  }
+  for (std::size_t i = 0; i < samples.size(); ++i) {
+    if (!edges[samples[i].pixel]) continue;
+    samples[i].kind = kinds[samples[i].pixel];
+    batch.lens_of[i] = kLeftOut;
+  }
+  std::erase_if(batch.regular,
+                [&](const LensRay& r) { return batch.lens_of[r.sample] == kLeftOut; });
+}
+
 void TileRenderer::Trace(std::size_t tile, std::vector<CameraSample>& samples,
-                         std::vector<PixelState>& pixels) const {
+                         std::vector<PixelState>& pixels, PixelFlags* edges) const {
   thread_local TileBatch batch;
   const std::uint8_t content = screen_.mask.content[tile];
   TracePrimary(tile, samples, batch);
   batch.lens_of.assign(samples.size(), 0);
+  batch.regular.clear();
+  std::optional<LensPass> pass;
+  bool whole = true;  // batches tell of every sample what it meets
   const std::uint8_t lens_bits[2] = {kTileRightLens, kTileLeftLens};
   for (std::size_t lens = 0; lens < head_.lenses.size(); ++lens) {
     if (!(content & lens_bits[lens])) continue;
     const EffectSet& on = follower_.effects(lens);
     const bool ghosts = on[Effect::kBounces] && follower_.follows_ghosts(lens);
     if (!ghosts && (content & (kTileRightLens | kTileLeftLens)) == lens_bits[lens]) {
-      LensPass(head_, follower_, camera_, eye_, lens, batch, samples, pixels).Trace();
+      pass.emplace(head_, follower_, camera_, eye_, lens, batch, samples, pixels);
+      pass->Enter();
     } else {
       // Both lenses in one tile, ghosts of mirrors: seldom, and not worth a batch.
-      std::fill(batch.lens_of.begin(), batch.lens_of.end(), std::uint8_t(3));
+      std::fill(batch.lens_of.begin(), batch.lens_of.end(), kExactly);
+      whole = false;
     }
   }
+  if (edges != nullptr) {
+    edges->fill(false);
+    if (whole) LeaveOutEdges(samples, batch, *edges);
+  }
+  if (pass) pass->Shade();
   TraceGloss(batch, samples, pixels);
   for (std::size_t i = 0; i < samples.size(); ++i) {
-    if (batch.lens_of[i] == 3) {
+    if (batch.lens_of[i] == kExactly) {
       TraceExactly(i, batch, samples, pixels);
     } else if (batch.lens_of[i] == 0) {
       Direct(i, batch, samples, pixels);

@@ -24,13 +24,20 @@ class TileRenderer {
                const Camera& camera, const Eigen::Isometry3d& camera_from_head);
 
   // Traces samples of one tile. Neighbours in the list should be neighbours in the picture.
-  void Trace(std::size_t tile, std::vector<CameraSample>& samples,
-             std::vector<PixelState>& pixels) const;
+  //   edges  null, or with one sample a pixel: receives the pixels beside which (left, right,
+  //   above,
+  //          below, in this tile) something else is met, and those whose way through glass ends at
+  //          its edge. They will take more samples; here they get their kind only, of glass
+  //          kLensElsewhere.
+  void Trace(std::size_t tile, std::vector<CameraSample>& samples, std::vector<PixelState>& pixels,
+             PixelFlags* edges = nullptr) const;
 
  private:
   // Fills batch.primary.
   void TracePrimary(std::size_t tile, const std::vector<CameraSample>& samples,
                     TileBatch& batch) const;
+  static void LeaveOutEdges(std::vector<CameraSample>& samples, TileBatch& batch,
+                            PixelFlags& edges);
   void TraceGloss(TileBatch& batch, const std::vector<CameraSample>& samples,
                   std::vector<PixelState>& pixels) const;
   void TraceExactly(std::size_t sample, const TileBatch& batch, std::vector<CameraSample>& samples,
