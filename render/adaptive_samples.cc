@@ -50,14 +50,15 @@ void PlaceSamples(const PixelBox& area, int side, const PixelFlags* wanted,
 }
 
 Glance Glance::At(const CameraSample& sample, bool is_edge) {
-  if (is_edge) return {sample.kind, 0, true};
+  if (is_edge) return {sample.kind, 0, true, sample.turns};
   switch (ClassOf(sample.kind)) {
     case SampleClass::kInput:
-      return {sample.kind, std::uint8_t(255 * std::clamp(sample.direct.mean(), 0.0f, 1.0f)), false};
+      return {sample.kind, std::uint8_t(255 * std::clamp(sample.direct.mean(), 0.0f, 1.0f)), false,
+              sample.turns};
     case SampleClass::kFrame:
-      return {sample.kind, CodeFromLinear(sample.inserted.mean()), false};
+      return {sample.kind, CodeFromLinear(sample.inserted.mean()), false, sample.turns};
     default:
-      return {sample.kind, 0, false};
+      return {sample.kind, 0, false, sample.turns};
   }
 }
 
@@ -68,7 +69,7 @@ PixelFlags PixelsToRefine(const PixelBox& area, const PixelBox& box,
   const auto differ = [](const Glance& own, const Glance& other) {
     const SampleClass its = ClassOf(own.kind);
     if (its != ClassOf(other.kind)) return true;
-    if (other.edge) return false;
+    if (other.edge && its != SampleClass::kGlass) return own.turns;
     const int apart = std::abs(int(own.code) - int(other.code));
     switch (its) {
       case SampleClass::kInput:

@@ -20,7 +20,8 @@ void PlaceSamples(const PixelBox& area, int side, const PixelFlags* wanted,
 struct Glance {
   CameraSample::Kind kind = CameraSample::Kind::kBackground;
   std::uint8_t code = 0;  // of a frame its light, encoded; of head and background their factor
-  bool edge = false;      // left out so far (TileRenderer::Trace): no code, of glass any kind
+  bool edge = false;      // left out so far (TileRenderer::Trace): no code
+  bool turns = false;     // CameraSample::turns
   static Glance At(const CameraSample& sample, bool is_edge);
 };
 

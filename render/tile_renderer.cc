@@ -13,6 +13,11 @@
 #include "render/tile_batch.h"
 
 namespace lorgnette {
+namespace {
+
+constexpr float kFlat = 0.25f;  // turn of the frame's normal over a pixel, radians
+
+}  // namespace
 
 TileRenderer::TileRenderer(const HeadScene& head, const RayFollower& follower,
                            const ScreenScene& screen, const Camera& camera,
@@ -74,7 +79,6 @@ void TileRenderer::Direct(std::size_t i, const TileBatch& batch, std::vector<Cam
 // Where the frame, seen directly, mirrors: one ray a pixel where it is flat, one a sample else.
 void TileRenderer::TraceGloss(TileBatch& batch, const std::vector<CameraSample>& samples,
                               std::vector<PixelState>& pixels) const {
-  constexpr float kFlat = 0.25f;  // turn of the normal over a pixel, radians
   batch.gloss.Clear();
   batch.gloss_of.clear();
   batch.gloss_ends.assign(samples.size(), std::nullopt);
@@ -140,35 +144,48 @@ void TileRenderer::TraceExactly(std::size_t i, const TileBatch& batch,
 }
 
 void TileRenderer::LeaveOutEdges(std::vector<CameraSample>& samples, TileBatch& batch,
-                                 PixelFlags& edges) {
+                                 PixelFlags& edges) const {
   using Kind = CameraSample::Kind;
-  // Pixels outside the picture are like those beside them.
+  // Of each pixel; those outside the picture are like the ones beside them.
   constexpr auto kOutside = Kind(0xff);
   std::array<Kind, std::tuple_size_v<PixelFlags>> kinds;
   kinds.fill(kOutside);
-  edges.fill(false);
   for (std::size_t i = 0; i < samples.size(); ++i) {
     const SceneHit& hit = batch.primary.hits[i];
-    kinds[samples[i].pixel] = batch.lens_of[i] != 0               ? Kind::kLensElsewhere
+    const std::uint8_t lens = batch.lens_of[i];
+    kinds[samples[i].pixel] = lens == kExactly                    ? Kind::kLensElsewhere
+                              : lens != 0                         ? Kind::kLensToHead  // or past it
                               : hit.object == SceneObject::kFrame ? Kind::kFrame
                               : hit.hit()                         ? Kind::kHead
                                                                   : Kind::kBackground;
-    edges[samples[i].pixel] = batch.lens_of[i] == kExactly;
+    samples[i].turns = kinds[samples[i].pixel] == Kind::kFrame && follower_.TurnAt(hit) >= kFlat;
   }
   for (const LensRay& r : batch.regular) {
-    if (r.way != LensWay::kThrough) edges[samples[r.sample].pixel] = true;
+    if (r.way != LensWay::kThrough) kinds[samples[r.sample].pixel] = Kind::kLensElsewhere;
   }
-  const auto compare = [&](std::size_t a, std::size_t b) {
-    const bool differ =
-        kinds[a] != kOutside && kinds[b] != kOutside && ClassOf(kinds[a]) != ClassOf(kinds[b]);
-    edges[a] = edges[a] || differ;
-    edges[b] = edges[b] || differ;
+  // Whether it holds of one of a pixel's neighbours in the tile.
+  const auto beside = [&](std::size_t pixel, auto&& holds) {
+    const int x = int(pixel) % kTileSide, y = int(pixel) / kTileSide;
+    return (x > 0 && holds(TileIndex(x - 1, y))) ||
+           (x + 1 < kTileSide && holds(TileIndex(x + 1, y))) ||
+           (y > 0 && holds(TileIndex(x, y - 1))) ||
+           (y + 1 < kTileSide && holds(TileIndex(x, y + 1)));
   };
-  for (int y = 0; y < kTileSide; ++y) {
-    for (int x = 0; x < kTileSide; ++x) {
-      if (x + 1 < kTileSide) compare(TileIndex(x, y), TileIndex(x + 1, y));
-      if (y + 1 < kTileSide) compare(TileIndex(x, y), TileIndex(x, y + 1));
-    }
+  // What glass shows is what decides about the pixels around it.
+  for (const CameraSample& s : samples) {
+    const Kind kind = kinds[s.pixel];
+    edges[s.pixel] =
+        kind == Kind::kLensElsewhere ||
+        (ClassOf(kind) != SampleClass::kGlass && beside(s.pixel, [&](std::size_t other) {
+           return kinds[other] != kOutside && ClassOf(kinds[other]) != ClassOf(kind);
+         }));
+  }
+  // Beside its edge, of which no more is known yet, a frame that turns has another brightness.
+  const PixelFlags sharp = edges;
+  for (const CameraSample& s : samples) {
+    edges[s.pixel] = edges[s.pixel] || (s.turns && beside(s.pixel, [&](std::size_t other) {
+                                          return sharp[other] && kinds[other] == Kind::kFrame;
+                                        }));
   }
   for (std::size_t i = 0; i < samples.size(); ++i) {
     if (!edges[samples[i].pixel]) continue;

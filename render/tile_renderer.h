@@ -24,11 +24,10 @@ class TileRenderer {
                const Camera& camera, const Eigen::Isometry3d& camera_from_head);
 
   // Traces samples of one tile. Neighbours in the list should be neighbours in the picture.
-  //   edges  null, or with one sample a pixel: receives the pixels beside which (left, right,
-  //   above,
-  //          below, in this tile) something else is met, and those whose way through glass ends at
-  //          its edge. They will take more samples; here they get their kind only, of glass
-  //          kLensElsewhere.
+  //   edges  null, or with one sample a pixel: receives the pixels of the input and of the frame
+  //          beside which (left, right, above, below, in this tile) something else is met, those
+  //          beside them where the frame turns, and those whose way through glass ends at its edge.
+  //          They will take more samples; here they get their kind only.
   void Trace(std::size_t tile, std::vector<CameraSample>& samples, std::vector<PixelState>& pixels,
              PixelFlags* edges = nullptr) const;
 
@@ -36,8 +35,7 @@ class TileRenderer {
   // Fills batch.primary.
   void TracePrimary(std::size_t tile, const std::vector<CameraSample>& samples,
                     TileBatch& batch) const;
-  static void LeaveOutEdges(std::vector<CameraSample>& samples, TileBatch& batch,
-                            PixelFlags& edges);
+  void LeaveOutEdges(std::vector<CameraSample>& samples, TileBatch& batch, PixelFlags& edges) const;
   void TraceGloss(TileBatch& batch, const std::vector<CameraSample>& samples,
                   std::vector<PixelState>& pixels) const;
   void TraceExactly(std::size_t sample, const TileBatch& batch, std::vector<CameraSample>& samples,
