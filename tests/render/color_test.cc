@@ -30,8 +30,8 @@ TEST(Color, TransferFunctionsAreInverseToEachOther) {
 }
 
 TEST(Color, TransferHasTheValuesOfTheStandard) {
-  EXPECT_EQ(LinearFromSrgb(0), 0);
-  EXPECT_EQ(LinearFromSrgb(1), 1);
+  EXPECT_EQ(LinearFromSrgb(0.0), 0);
+  EXPECT_EQ(LinearFromSrgb(1.0), 1);
   // IEC 61966-2-1: code 10 lies on the linear part; mid grey 128 is 21.586 per cent.
   EXPECT_EQ(LinearFromCode(10), static_cast<float>(10 / 255.0 / 12.92));
   EXPECT_NEAR(LinearFromCode(128), 0.215861, 5e-7);  // half a unit of the printed digits
