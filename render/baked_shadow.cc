@@ -62,8 +62,7 @@ BakedShadow BakedShadow::Bake(const EmbreeScene& scene, const TriangleMesh& face
 
   const std::vector<Eigen::Vector3f> sphere = SphereDirections(options.directions);
   baked.sphere_ = DirectionColumns(sphere);
-  if (options.sees_face) baked.views_.emplace(scene, face, baked.sphere_);
-  baked.BakeOpenLight(face, sphere);
+  if (options.sees_face) baked.views_.emplace(face, sphere.size());
 
   std::vector<Lists> lists(points.size());
   const auto trace = [&](const std::vector<std::uint32_t>& which) {
@@ -112,6 +111,7 @@ BakedShadow BakedShadow::Bake(const EmbreeScene& scene, const TriangleMesh& face
     Touched& point = baked.touched_[k];
     point.to_frame_mm = some.DistanceToNearest(point.baked_at);
   });
+  baked.BakeOpenLight(face, sphere);
   baked.FindNeighbours();
   for (const FaceLattice::Between& b : baked.means_) {
     is_touched[b.point] = is_touched[b.one] || is_touched[b.other];
@@ -121,7 +121,7 @@ BakedShadow BakedShadow::Bake(const EmbreeScene& scene, const TriangleMesh& face
 }
 
 BakedShadow::Lists BakedShadow::ListBlocked(const EmbreeScene& scene, const LatticePoint& at,
-                                            const Eigen::Vector3i& corners) const {
+                                            const Eigen::Vector3i& corners) {
   thread_local std::vector<Blocked> thread_blocked, thread_hidden;
   std::vector<Blocked>&blocked = thread_blocked, &hidden = thread_hidden;
   blocked.clear();
@@ -238,9 +238,12 @@ void BakedShadow::FindNeighbours() {
 
 void BakedShadow::FindHidden(const EmbreeScene& scene, const LatticePoint& at,
                              const Eigen::Vector3i& corners, const std::vector<Blocked>& blocked,
-                             std::vector<std::uint8_t>& hidden) const {
+                             std::vector<std::uint8_t>& hidden) {
   const Eigen::Vector3f origin = at.position + kFaceLift_mm * at.normal;
   hidden.resize(blocked.size());
+  for (int k = 0; k < 3 && !blocked.empty(); ++k) {
+    views_->Prepare(scene, sphere_, std::size_t(corners[k]));
+  }
   RayPacket packet;
   std::size_t asked[RayPacket::kSize];
   std::size_t filled = 0;
@@ -268,11 +271,14 @@ void BakedShadow::BakeOpenLight(const TriangleMesh& face,
   for (const Eigen::Vector3f& d : sphere) harmonics.push_back(EvaluateHarmonics(d));
   const float solid_angle = float(4 * kPi) / float(sphere.size());
   open_.resize(face.positions.size());
-  tbb::parallel_for(std::size_t(0), face.positions.size(), [&](std::size_t i) {
+  std::vector<std::uint8_t> wanted(open_.size(), 0);
+  for (const Touched& point : touched_) {
+    for (int k = 0; k < 3; ++k) wanted[std::size_t(point.vertices[k])] = 1;
+  }
+  tbb::parallel_for(std::size_t(0), open_.size(), [&](std::size_t i) {
+    if (!wanted[i]) return;
     const Eigen::Vector3f normal = face.normals[i].cast<float>();
     Open& point = open_[i];
-    point.seen.fill(0);
-    point.all.fill(0);
     float open = 0, total = 0;
     for (std::size_t k = 0; k < sphere.size(); ++k) {
       const float cosine = sphere[k].dot(normal);

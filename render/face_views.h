@@ -5,6 +5,8 @@
 
 #include <Eigen/Core>
 #include <cstdint>
+#include <memory>
+#include <mutex>
 #include <vector>
 
 #include "base/mesh.h"
@@ -15,9 +17,11 @@ namespace lorgnette {
 
 class FaceViews {
  public:
-  FaceViews() = default;
-  //   face  with normals;  directions  all over the sphere
-  FaceViews(const EmbreeScene& scene, const TriangleMesh& face, const DirectionColumns& directions);
+  //   face  with normals;  directions  how many there are, all over the sphere
+  FaceViews(const TriangleMesh& face, std::size_t directions);
+
+  // Traces a vertex, if it has not been; before anything is asked of it. Thread safe.
+  void Prepare(const EmbreeScene& scene, const DirectionColumns& directions, std::size_t vertex);
 
   enum class View : std::uint8_t { kOpen, kHidden, kUnknown };
   // From a vertex; unknown below its surface.
@@ -36,7 +40,9 @@ class FaceViews {
   }
 
  private:
-  std::size_t words_ = 0;                     // a vertex
+  std::size_t words_;  // a vertex
+  std::vector<Eigen::Vector3f> origins_, normals_;
+  std::unique_ptr<std::once_flag[]> once_;    // one a vertex
   std::vector<std::uint64_t> open_, hidden_;  // a bit a direction
 };
 

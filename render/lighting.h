@@ -103,9 +103,9 @@ class BakedShadow {
   static constexpr float kCosineUnits = 65535;
   // Light that arrives without glasses, at the vertices: it varies slowly.
   struct Open {
-    Harmonics seen;   // past the face
-    Harmonics all;    // as if there were no face
-    float share = 1;  // of the cosine-weighted hemisphere that the face leaves open
+    Harmonics seen{};  // past the face
+    Harmonics all{};   // as if there were no face
+    float share = 1;   // of the cosine-weighted hemisphere that the face leaves open
   };
   // What the frame blocks from one point: first what the face leaves open, then what it hides with
   // or without glasses.
@@ -128,16 +128,16 @@ class BakedShadow {
   };
   //   corners  vertices of the point's triangle
   Lists ListBlocked(const EmbreeScene& scene, const LatticePoint& at,
-                    const Eigen::Vector3i& corners) const;
+                    const Eigen::Vector3i& corners);
   // Whether the face hides each of the blocked directions.
   void FindHidden(const EmbreeScene& scene, const LatticePoint& at, const Eigen::Vector3i& corners,
-                  const std::vector<Blocked>& blocked, std::vector<std::uint8_t>& hidden) const;
+                  const std::vector<Blocked>& blocked, std::vector<std::uint8_t>& hidden);
   void FindNeighbours();
   void BakeOpenLight(const TriangleMesh& face, const std::vector<Eigen::Vector3f>& sphere);
 
   FaceLattice lattice_;
   std::vector<FaceLattice::Between> means_;  // points that take the mean of two before them
-  std::vector<Open> open_;                   // one a vertex
+  std::vector<Open> open_;                   // one a vertex, of those beside touched points
   std::vector<Touched> touched_;
   DirectionColumns sphere_;
   std::optional<FaceViews> views_;  // of the face at rest, where S_noGlasses sees it

@@ -15,7 +15,8 @@ TEST(FaceViews, TellWhatRaysTellWhereCornersAgree) {
   const TriangleMesh square = test::Wall(24, 12, 2);
   const EmbreeScene scene = *EmbreeScene::Build(face, square, TriangleMesh{});
   const DirectionColumns directions(SphereDirections(512));
-  const FaceViews views(scene, face, directions);
+  FaceViews views(face, directions.size());
+  for (std::size_t i = 0; i < face.positions.size(); ++i) views.Prepare(scene, directions, i);
   long hidden = 0, open = 0, unknown = 0, wrong = 0;
   for (const Eigen::Vector3i& t : face.triangles) {
     const Eigen::Vector3d middle =
