@@ -11,7 +11,7 @@ namespace {
 
 // Pixels of the frame that differ from a neighbour by more than this many code values take all
 // their samples.
-constexpr int kFrameContrast = 12;
+constexpr int kFrameContrast = 16;
 // Head beside background, or background beside head: of their factors, of 255.
 constexpr int kFactorContrast = 5;
 // Of the shadow's factor between neighbours on the grid: a code value or two.
