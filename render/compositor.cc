@@ -325,7 +325,8 @@ RenderCounts Compositor::Draw(const Sitting& sitting, const PictureEffects& effe
       states[s.pixel].side = std::uint8_t(here);
     }
     PixelFlags edges{};
-    renderer.Trace(tile, samples, states, adaptive && !refine ? &edges : nullptr);
+    const bool wait = adaptive && !refine && content != kTileShadow;
+    renderer.Trace(tile, samples, states, wait ? &edges : nullptr);
     const float share = 1.0f / float(here * here);
     for (const CameraSample& s : samples) sums[s.pixel].Add(s, share);
     RenderCounts& count = counts_of[i];
