@@ -12,10 +12,10 @@ namespace {
 // Pixels of the frame that differ from a neighbour by more than this many code values take all
 // their samples.
 constexpr int kFrameContrast = 16;
-// Head beside background, or background beside head: of their factors, of 255.
-constexpr int kFactorContrast = 5;
 // Of the shadow's factor between neighbours on the grid: a code value or two.
 constexpr float kShadowContrast = 0.02f;
+// The same between head and background, of 255.
+constexpr int kFactorContrast = int(255 * kShadowContrast);
 
 }  // namespace
 
@@ -49,17 +49,16 @@ void PlaceSamples(const PixelBox& area, int side, const PixelFlags* wanted,
   }
 }
 
+Glance Glance::AtInput(CameraSample::Kind kind, const Eigen::Vector3f& factor) {
+  return {kind, std::uint8_t(255 * std::clamp(factor.mean(), 0.0f, 1.0f))};
+}
+
 Glance Glance::At(const CameraSample& sample, bool is_edge) {
-  if (is_edge) return {sample.kind, 0, true, sample.turns};
-  switch (ClassOf(sample.kind)) {
-    case SampleClass::kInput:
-      return {sample.kind, std::uint8_t(255 * std::clamp(sample.direct.mean(), 0.0f, 1.0f)), false,
-              sample.turns};
-    case SampleClass::kFrame:
-      return {sample.kind, CodeFromLinear(sample.inserted.mean()), false, sample.turns};
-    default:
-      return {sample.kind, 0, false, sample.turns};
-  }
+  const SampleClass its = ClassOf(sample.kind);
+  if (its == SampleClass::kInput && !is_edge) return AtInput(sample.kind, sample.direct);
+  const bool has_code = its == SampleClass::kFrame && !is_edge;
+  return {sample.kind, has_code ? CodeFromLinear(sample.inserted.mean()) : std::uint8_t{0}, is_edge,
+          sample.turns};
 }
 
 PixelFlags PixelsToRefine(const PixelBox& area, const PixelBox& box,

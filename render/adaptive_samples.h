@@ -23,6 +23,8 @@ struct Glance {
   bool edge = false;      // left out so far (TileRenderer::Trace): no code
   bool turns = false;     // CameraSample::turns
   static Glance At(const CameraSample& sample, bool is_edge);
+  // Of head or background.
+  static Glance AtInput(CameraSample::Kind kind, const Eigen::Vector3f& factor);
 };
 
 // Pixels beside which (left, right, above, below) something else is met, unless both show the input

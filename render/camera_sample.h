@@ -21,7 +21,7 @@ struct CameraSample {
     kLensElsewhere      // any other way through glass
   };
   Kind kind = Kind::kBackground;
-  bool turns = false;                 // the frame's normal does, within a pixel
+  bool turns = false;  // the frame's normal does, within a pixel: known where edges are left out
   Eigen::Vector3f inserted{0, 0, 0};  // light of lens and frame
   Eigen::Vector3f direct{1, 1, 1};    // factor of the input pixel
 };

@@ -283,10 +283,7 @@ RenderCounts Compositor::Draw(const Sitting& sitting, const PictureEffects& effe
       bool changed = false;
       for (std::size_t x = 0; x < across; ++x) {
         const Eigen::Vector3f& f = factor[first + x];
-        CameraSample seen;
-        seen.kind = kind[first + x];
-        seen.direct = f;
-        glance(area.x0 + int(x), y) = Glance::At(seen, false);
+        glance(area.x0 + int(x), y) = Glance::AtInput(kind[first + x], f);
         const bool darker = f.x() != 1 || f.y() != 1 || f.z() != 1;
         counts_of[i].shadowed_pixels += darker;
         changed = changed || darker;

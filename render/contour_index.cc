@@ -113,8 +113,9 @@ void ContourIndex::MeasureDistances() {
   };
   std::vector<Circle> edges, runs;
   for (std::size_t i = 0; i < n; ++i) edges.push_back(around(i, i + 1));
-  for (std::size_t i = 0; i < n; i += kRunEdges)
+  for (std::size_t i = 0; i < n; i += kRunEdges) {
     runs.push_back(around(i, std::min(i + kRunEdges, n)));
+  }
   std::size_t likely = 0;  // the run that was nearest to the cell before
   std::vector<double> crossings;
   for (int row = 0; row < rows_; ++row) {

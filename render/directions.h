@@ -14,6 +14,21 @@ namespace lorgnette {
 //   count  a multiple of 16
 std::vector<Eigen::Vector3f> SphereDirections(int count);
 
+// Directions by columns, as packets take them; their count is a multiple of 16.
+struct DirectionColumns {
+  std::vector<float> x, y, z;
+  DirectionColumns() = default;
+  explicit DirectionColumns(const std::vector<Eigen::Vector3f>& directions) {
+    for (const Eigen::Vector3f& d : directions) {
+      x.push_back(d.x());
+      y.push_back(d.y());
+      z.push_back(d.z());
+    }
+  }
+  std::size_t size() const { return x.size(); }
+  Eigen::Vector3f operator[](std::size_t i) const { return {x[i], y[i], z[i]}; }
+};
+
 // Cosine-weighted directions about +z, stratified and jittered: `rays` of them in rows of equal
 // weight (160: 4 rows of 40, the paper's choice), so that the mean over them of f estimates
 // (1 / pi) * integral of f cos. Different seeds give different jitter.

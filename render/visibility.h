@@ -4,8 +4,8 @@
 
 #include <Eigen/Core>
 #include <algorithm>
-#include <vector>
 
+#include "render/directions.h"
 #include "render/embree_scene.h"
 
 namespace lorgnette {
@@ -14,21 +14,6 @@ namespace lorgnette {
 inline constexpr float kFrameLift_mm = 0.02f;
 // The same against the face: smooth normals rise above the flat triangles.
 inline constexpr float kFaceLift_mm = 0.3f;
-
-// Directions by columns, as packets take them; their count is a multiple of 16.
-struct DirectionColumns {
-  std::vector<float> x, y, z;
-  DirectionColumns() = default;
-  explicit DirectionColumns(const std::vector<Eigen::Vector3f>& directions) {
-    for (const Eigen::Vector3f& d : directions) {
-      x.push_back(d.x());
-      y.push_back(d.y());
-      z.push_back(d.z());
-    }
-  }
-  std::size_t size() const { return x.size(); }
-  Eigen::Vector3f operator[](std::size_t i) const { return {x[i], y[i], z[i]}; }
-};
 
 // Calls visit(first, packet, cosine) for every group of 16 neighbours in `directions` of which any
 // lies above the surface; packet.valid marks those that do, cosine holds their dot product with
